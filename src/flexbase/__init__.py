@@ -1,0 +1,48 @@
+"""flexbase: where may a manipulator on a flexible base be driven hard, and what makes it safe elsewhere."""
+
+from flexbase.control.compensator import Certificate, Compensator, load_compensator
+from flexbase.design import METHODS, design
+from flexbase.errors import (
+    FlexbaseError,
+    FlexbaseWarning,
+    Infeasible,
+    InputError,
+    MissingExtra,
+    SingularArm,
+    Unreachable,
+)
+from flexbase.linear.linearise import linearise
+from flexbase.linear.modal import Mode, Modes, modes
+from flexbase.linear.second_order import SecondOrder
+from flexbase.model.task import Gains
+from flexbase.plant import Plant, Pose, load
+from flexbase.simulate import Run, simulate
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "METHODS",
+    "Certificate",
+    "Compensator",
+    "FlexbaseError",
+    "FlexbaseWarning",
+    "Gains",
+    "Infeasible",
+    "InputError",
+    "MissingExtra",
+    "Mode",
+    "Modes",
+    "Plant",
+    "Pose",
+    "Run",
+    "SecondOrder",
+    "SingularArm",
+    "Unreachable",
+    "__version__",
+    "design",
+    "linearise",
+    "load",
+    "load_compensator",
+    "modes",
+    "simulate",
+]

@@ -1,0 +1,85 @@
+"""The one vocabulary with which public functions check what they are given."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from flexbase.errors import InputError, nearest_name
+
+Array = NDArray[np.float64]
+Choice = TypeVar("Choice")
+
+
+def finite_array(name: str, value: ArrayLike) -> Array:
+    """Return `value` as a read-only array of finite doubles. Raises InputError."""
+    try:
+        array = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError) as fault:
+        raise InputError(f"{name}: {value!r} is not an array of numbers.") from fault
+    if not np.all(np.isfinite(array)):
+        raise InputError(f"{name}: {value!r} is not finite. Give finite numbers.")
+    array.flags.writeable = False
+    return array
+
+
+def check_length(name: str, value: ArrayLike, length: int, meaning: str) -> Array:
+    """Return a vector of `length` finite numbers. Raises InputError naming the count that was given."""
+    array = np.atleast_1d(finite_array(name, value))
+    if array.shape != (length,):
+        given = f"{array.size} values" if array.ndim == 1 else f"an array of shape {array.shape}"
+        raise InputError(f"{name}: {given} given, {length} needed: {meaning}.")
+    return array
+
+
+def check_symmetric(name: str, matrix: Array, unit: str) -> Array:
+    """Return a symmetric matrix, exactly so. Raises InputError where it is not symmetric to rounding."""
+    gap = float(np.max(np.abs(matrix - matrix.T), initial=0.0))
+    if gap > 1e-9 * float(np.max(np.abs(matrix), initial=0.0)):
+        i, j = np.unravel_index(np.argmax(np.abs(matrix - matrix.T)), matrix.shape)
+        raise InputError(
+            f"{name}: not symmetric, entry ({i + 1},{j + 1}) is {matrix[i, j]:g} {unit} but "
+            f"({j + 1},{i + 1}) is {matrix[j, i]:g}. Give a symmetric matrix."
+        )
+    symmetric = 0.5 * (matrix + matrix.T)
+    symmetric.flags.writeable = False
+    return symmetric
+
+
+def square_or_diagonal(name: str, value: ArrayLike, size: int, unit: str) -> Array:
+    """Return a symmetric (size, size) matrix from a vector (its diagonal) or from a full matrix."""
+    array = finite_array(name, value)
+    if array.ndim <= 1:
+        array = np.diag(check_length(name, array, size, f"one for each of {size}, or a full matrix"))
+    if array.shape != (size, size):
+        raise InputError(f"{name}: shape {array.shape} given, ({size}, {size}) or {size} numbers needed.")
+    return check_symmetric(name, array, unit)
+
+
+def check_definite(name: str, matrix: Array, unit: str, *, allow_zero: bool, why: str) -> Array:
+    """Return a positive (semi)definite matrix. Raises InputError with its smallest eigenvalue and the reason `why`."""
+    if matrix.size == 0:
+        return matrix
+    eigenvalues = np.linalg.eigvalsh(matrix)
+    scale = float(np.max(np.abs(eigenvalues)))
+    bound = -1e-12 * scale if allow_zero else 1e-14 * scale
+    if eigenvalues[0] < bound or (not allow_zero and eigenvalues[0] <= 0.0):
+        diagonal = np.array_equal(matrix, np.diag(np.diag(matrix)))
+        needed = (
+            ("zero or more" if diagonal else "a positive semidefinite matrix")
+            if allow_zero
+            else ("a positive number" if diagonal else "a positive definite matrix")
+        )
+        what = "" if diagonal else "smallest eigenvalue "
+        raise InputError(f"{name}: {what}{eigenvalues[0]:g} {unit} {why}. Give {needed}.")
+    return matrix
+
+
+def choose(name: str, value: str, valid: Mapping[str, Choice]) -> Choice:
+    """Return valid[value]. Raises InputError with the nearest valid name."""
+    if value not in valid:
+        raise InputError(f'{name}: "{value}" is unknown. {nearest_name(value, valid)}')
+    return valid[value]

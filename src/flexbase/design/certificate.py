@@ -1,0 +1,72 @@
+"""What every design method hands back: its gain, judged by everything that the project knows about gains."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+
+from flexbase.checks import Array, check_symmetric, finite_array
+from flexbase.control.compensator import Certificate, Compensator
+from flexbase.errors import FlexbaseWarning
+from flexbase.linear.linearise import Gain, modified_inertia
+from flexbase.linear.margins import (
+    algebraic_loop_radius,
+    algebraic_loop_radius_per_joint,
+    closed_loop_abscissa,
+    lag_margin,
+)
+from flexbase.linear.modal import modes
+from flexbase.model.task import Gains
+from flexbase.plant import Pose
+
+
+def certify(
+    pose: Pose,
+    method: str,
+    E: Array,
+    *,
+    target_residual: float = 0.0,
+    gains: Gains | None = None,
+    history: dict[str, Array] | None = None,
+) -> Compensator:
+    """A compensator with its certificate at `pose`. Assumes M - E > 0.
+
+    gains : for the closed loop; the project's own if left out
+    Warns when the algebraic loop does not bear a common delay.
+    """
+    E = check_symmetric("E", finite_array("E", E), "")
+    gains = gains if gains is not None else pose.arm.gains
+    before, after = modes(pose).modes, modes(pose, Gain(E)).modes
+    rho, mu = algebraic_loop_radius(pose, E), algebraic_loop_radius_per_joint(pose, E)
+    cautions = _cautions(rho, mu)
+    for caution in cautions:
+        warnings.warn(caution, FlexbaseWarning, stacklevel=4)
+    certificate = Certificate(
+        min_eig_modified_inertia=float(np.linalg.eigvalsh(modified_inertia(pose, E))[0]),
+        robustness_before=tuple(mode.robustness for mode in before),
+        robustness_after=tuple(mode.robustness for mode in after),
+        frequency_before_rad_s=tuple(mode.frequency for mode in before),
+        frequency_after_rad_s=tuple(mode.frequency for mode in after),
+        target_residual=target_residual,
+        algebraic_loop_radius=rho,
+        algebraic_loop_radius_per_joint=mu,
+        lag_margin_s=None if gains is None else lag_margin(pose, E, gains),
+        closed_loop_abscissa=None if gains is None else closed_loop_abscissa(pose, E, gains),
+        warnings=cautions,
+    )
+    return Compensator(method, pose.plant.name, E, pose.q, certificate, history or {})
+
+
+def _cautions(rho: float, mu: float) -> tuple[str, ...]:
+    if rho >= 1.0:
+        return (
+            f"algebraic-loop radius {rho:.3f} is 1 or more: any delay in the measured acceleration, however small, "
+            "destabilises this compensator. Ask for a lower frequency, or --objective least-radius.",
+        )
+    if mu >= 1.0:
+        return (
+            f"algebraic-loop radius {mu:.3f} with unequal delays is 1 or more: give all joints the same delay "
+            f"(radius {rho:.3f}).",
+        )
+    return ()

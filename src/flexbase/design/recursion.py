@@ -1,0 +1,115 @@
+"""The recursion that both of the paper's methods share: small steps towards the targets.  [U03 eq 13-16]"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from flexbase.checks import Array, check_length
+from flexbase.control.compensator import Compensator
+from flexbase.design.certificate import certify
+from flexbase.design.mode_parameters import (
+    ModeParameters,
+    mode_parameters,
+    parameter_slopes,
+    symmetric,
+    upper_triangle,
+)
+from flexbase.errors import Infeasible, InputError
+from flexbase.linear.linearise import modified_inertia
+from flexbase.linear.modal import modes
+from flexbase.model.task import Gains
+from flexbase.plant import Pose
+
+STEP = 0.02  # g1 of the paper's example
+ITERATIONS = 800
+RAISE = 1.25  # default target over the present frequency; the paper's example raises it by 1.2515
+TRIAL = 1e-5  # size of the small variations from which H is estimated, relative to the arm's inertia
+NEGLIGIBLE = 1e-9  # singular values of a scaled H below this are taken as zero
+
+
+def shape_recursively(
+    pose: Pose,
+    method: str,
+    natural_frequencies: Sequence[float] | None,
+    *,
+    step: float,
+    iterations: int,
+    derivatives: str,
+    seed: int,
+    gains: Gains | None,
+) -> Compensator:
+    """Drive [w_i, omega_i] towards [0, target] by repeated small steps in E, from E = 0; earlier modes take priority.
+
+    Raises Infeasible, with the iteration, if M - E stops being positive definite.
+    """
+    _check_options(pose, method, step, iterations, derivatives)
+    now = mode_parameters(pose, np.zeros((pose.arm.n, pose.arm.n)))
+    targets = np.zeros_like(now.values)
+    targets[:, 1] = RAISE * now.values[:, 1]
+    if natural_frequencies is not None:
+        targets[:, 1] = check_length("natural frequency", natural_frequencies, pose.arm.m, "one for each mode")
+    rng = np.random.default_rng(seed)
+    n = pose.arm.n
+    E, H = np.zeros((n, n)), np.zeros((pose.arm.m, 2, n * (n + 1) // 2))
+    track = [_record(pose, E, now)]
+    for iteration in range(iterations):
+        try:
+            H = parameter_slopes(pose, E, now) if derivatives == "exact" else _estimate(pose, E, now, H, rng)
+            E = symmetric(upper_triangle(E) + _priority_step(H, step * (targets - now.values)), n)
+            now = mode_parameters(pose, E)
+        except Infeasible as fault:
+            raise Infeasible(
+                f"{method}: after {iteration} of {iterations} iterations {fault} Ask for lower natural frequencies, "
+                "a smaller step or another pose."
+            ) from fault
+        track.append(_record(pose, E, now))
+    scale = np.column_stack([np.abs(modes_robustness(pose)), targets[:, 1]])
+    residual = float(np.abs((now.values - targets) / np.where(scale > 0.0, scale, 1.0)).max())
+    history = dict(zip(("robustness", "frequency_rad_s", "min_eig_modified_inertia"), np.array(track).T, strict=True))
+    return certify(pose, method, E, target_residual=residual, gains=gains, history=history)
+
+
+def modes_robustness(pose: Pose) -> Array:
+    """w_i without a compensator, shape (m,)."""
+    return np.array([mode.robustness for mode in modes(pose).modes])
+
+
+def _check_options(pose: Pose, method: str, step: float, iterations: int, derivatives: str) -> None:
+    if pose.arm.has_gravity:
+        raise InputError(f"{method}: gravity stiffness lies outside the reduced form. Design with gravity = [0, 0, 0].")
+    if not 0.0 < step <= 1.0:
+        raise InputError(f"step: {step:g} must be above 0 and at most 1. The paper uses {STEP:g}.")
+    if iterations < 1:
+        raise InputError(f"iterations: {iterations} must be 1 or more. The paper uses {ITERATIONS}.")
+    if derivatives not in ("estimated", "exact"):
+        raise InputError(f'derivatives: "{derivatives}" is unknown. Give "estimated" (as the paper) or "exact".')
+
+
+def _estimate(pose: Pose, E: Array, now: ModeParameters, H: Array, rng: np.random.Generator) -> Array:
+    """H <- H + (Y - H X) X^+ from small random variations X of rho and the changes Y they cause.  [U03 eq 16]"""
+    rho = upper_triangle(E)
+    size = TRIAL * float(np.linalg.norm(pose.M[pose.arm.m :, pose.arm.m :]))
+    X = size * rng.standard_normal((len(rho), len(rho)))
+    moved = [mode_parameters(pose, symmetric(rho + variation, pose.arm.n)).values - now.values for variation in X.T]
+    Y = np.moveaxis(np.array(moved), 0, -1)
+    return np.asarray(H + (Y - H @ X) @ np.linalg.pinv(X))
+
+
+def _priority_step(H: Array, wanted: Array) -> Array:
+    """Change of rho that meets each mode's wanted change in the freedom that earlier modes leave.  [U03 eq 14, Y01]"""
+    size = H.shape[-1]
+    change, free = np.zeros(size), np.eye(size)
+    for slopes, aim in zip(H, wanted, strict=True):
+        lengths = np.linalg.norm(slopes, axis=1, keepdims=True)
+        rows = 1.0 / np.where(lengths > 0.0, lengths, 1.0)
+        inverse = np.linalg.pinv(rows * slopes @ free, rcond=NEGLIGIBLE)
+        change = change + inverse @ (rows[:, 0] * (aim - slopes @ change))
+        free = free - inverse @ (rows * slopes @ free)
+    return np.asarray(change)
+
+
+def _record(pose: Pose, E: Array, now: ModeParameters) -> tuple[float, float, float]:
+    """First mode's w and omega, and lambda_min(M - E): the three curves of the paper's Fig. 7."""
+    return float(now.values[0, 0]), float(now.values[0, 1]), float(np.linalg.eigvalsh(modified_inertia(pose, E))[0])

@@ -1,0 +1,46 @@
+"""The table of design methods: one decorator line a method, one entry for all of them."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from flexbase.checks import choose
+from flexbase.control.compensator import Compensator
+from flexbase.errors import InputError, nearest_name
+from flexbase.plant import Pose
+
+
+class Method(NamedTuple):
+    """A registered design method."""
+
+    name: str
+    purpose: str
+    run: Callable[..., Compensator]
+
+
+METHODS: dict[str, Method] = {}
+
+
+def method(name: str, purpose: str) -> Callable[[Callable[..., Compensator]], Callable[..., Compensator]]:
+    """Register a function pose, **options -> Compensator under a name."""
+
+    def register(run: Callable[..., Compensator]) -> Callable[..., Compensator]:
+        METHODS[name] = Method(name, purpose, run)
+        return run
+
+    return register
+
+
+def design(pose: Pose, method: str = "exact", **options: Any) -> Compensator:
+    """Design a compensator at a pose by a registered method; see `METHODS` and each method's own options.
+
+    Raises Infeasible if the answer is no, InputError if the method or an option does not fit.
+    """
+    run = choose("method", method, METHODS).run
+    known = [name for name in inspect.signature(run).parameters if name != "pose"]
+    for option in options:
+        if option not in known:
+            raise InputError(f'method {method}: the option "{option}" is unknown. {nearest_name(option, known)}')
+    return run(pose, **options)

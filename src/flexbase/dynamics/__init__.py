@@ -1,0 +1,1 @@
+"""Kinematics and dynamics, each written once on any number type."""

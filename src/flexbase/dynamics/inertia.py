@@ -1,0 +1,21 @@
+"""The joint-space inertia matrix by the composite-rigid-body algorithm, on any number type.  [F08 ch 6]"""
+
+from __future__ import annotations
+
+from flexbase.dynamics.kinematics import Frames
+from flexbase.dynamics.spatial import momentum, power, sum_of_inertias
+from flexbase.trace.algebra import Matrix, Scalar
+
+
+def mass_matrix(frames: Frames) -> Matrix:
+    """M(q), N x N symmetric.  [U03 eq 1]"""
+    size = len(frames.bodies)
+    M: list[list[Scalar]] = [[0.0] * size for _ in range(size)]
+    composite = None
+    for i in reversed(range(size)):
+        body = frames.bodies[i]
+        composite = body if composite is None else sum_of_inertias(body, composite)
+        carried = momentum(composite, frames.motions[i])
+        for j in range(i + 1):
+            M[i][j] = M[j][i] = power(carried, frames.motions[j])
+    return tuple(map(tuple, M))

@@ -1,0 +1,93 @@
+"""Inverse kinematics of any serial arm: damped Newton steps from many starts at once."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.stats import qmc
+
+from flexbase.checks import Array
+from flexbase.dynamics.kinematics import forward, task_jacobian
+from flexbase.dynamics.task import task_error
+from flexbase.dynamics.two_joint_arm import solve_two_joint_arm, two_joint_arm
+from flexbase.model.mechanism import Mechanism
+from flexbase.model.task import Task
+from flexbase.trace.algebra import stack
+
+STARTS = 128
+STEPS = 80
+LARGEST_STEP = 0.5  # rad or m, a Newton step
+TOLERANCE = 1e-11  # of the arm's reach: rounding in the kinematics is some 1e-15 of it
+
+
+def arm_angles(
+    mechanism: Mechanism, task: Task, base_rest: Array, target: Array, branch: str, near: Array | None = None
+) -> tuple[Array | None, float]:
+    """Arm joints that bring the tip to a target while the base rests, and the smallest tip error that was found.
+
+    The branch is the sign of the elbow, the arm's second joint (no choice below two joints). Of several solutions the
+    one nearest to `near` (zero if not given) is taken. None where no start ends at the target.
+    """
+    planar = two_joint_arm(mechanism, task, base_rest)
+    if planar is not None:
+        first, second, cosine = solve_two_joint_arm(planar, target[0], target[1], branch)
+        reached = abs(float(cosine)) <= 1.0
+        distance = float(np.hypot(*(target - planar.shoulder)))
+        shortfall = max(distance - planar.upper - planar.fore, abs(planar.upper - planar.fore) - distance, 0.0)
+        return (np.array([first, second]), 0.0) if reached else (None, shortfall)
+    starts = _starts(mechanism, len(base_rest), branch, near)
+    found, errors = newton(mechanism, task, base_rest, starts, target)
+    good = errors <= TOLERANCE * _reach(mechanism)
+    if found.shape[1] > 1 and mechanism.joint_types[len(base_rest) + 1] == "revolute":
+        good &= (np.sin(found[:, 1]) >= 0.0) == (branch == "+")
+    if not good.any():
+        return None, float(errors.min())
+    centre = np.zeros(found.shape[1]) if near is None else near
+    return found[good][np.argmin(np.linalg.norm(found[good] - centre, axis=1))], 0.0
+
+
+def newton(mechanism: Mechanism, task: Task, base_rest: Array, starts: Array, target: Array) -> tuple[Array, Array]:
+    """Improve every row of `starts`, shape (S, n); returns the joints and the norms of the remaining tip errors."""
+    m = len(base_rest)
+    revolute = np.array([kind == "revolute" for kind in mechanism.joint_types[m:]])
+    joints = starts.copy()
+    aim = np.broadcast_to(target, (len(starts), task.k))
+    damping = np.full((len(starts), 1, 1), 1e-3)
+    error, J = _error_and_jacobian(mechanism, task, base_rest, joints, aim)
+    for _ in range(STEPS):
+        gram = J @ np.swapaxes(J, -1, -2) + damping * np.eye(task.k)
+        step = -(np.swapaxes(J, -1, -2) @ np.linalg.solve(gram, error[..., None]))[..., 0]
+        step *= np.minimum(1.0, LARGEST_STEP / np.maximum(np.abs(step).max(axis=1, keepdims=True), 1e-300))
+        trial = joints + step
+        trial_error, trial_J = _error_and_jacobian(mechanism, task, base_rest, trial, aim)
+        better = np.linalg.norm(trial_error, axis=1) < np.linalg.norm(error, axis=1)
+        joints[better], error[better], J[better] = trial[better], trial_error[better], trial_J[better]
+        damping = np.where(better[:, None, None], damping * 0.1, np.minimum(damping * 10.0, 1e3))
+    joints[:, revolute] = np.pi - np.mod(np.pi - joints[:, revolute], 2.0 * np.pi)
+    return joints, np.linalg.norm(error, axis=1)
+
+
+def _error_and_jacobian(
+    mechanism: Mechanism, task: Task, base_rest: Array, joints: Array, target: Array
+) -> tuple[Array, Array]:
+    frames = forward(mechanism, (*map(float, base_rest), *joints.T))
+    J = stack(task_jacobian(frames, task.indices))[..., len(base_rest) :]
+    return task_error(frames, task, target), np.array(np.broadcast_to(J, (len(joints), *J.shape[-2:])))
+
+
+def _starts(mechanism: Mechanism, m: int, branch: str, near: Array | None) -> Array:
+    """Low-discrepancy starts over the arm's joints, the elbow on the asked side; the first is `near`."""
+    n = mechanism.N - m
+    unit = qmc.Halton(n, scramble=False).random(STARTS)
+    span = np.array([np.pi if kind == "revolute" else _reach(mechanism) for kind in mechanism.joint_types[m:]])
+    starts = (2.0 * unit - 1.0) * span
+    if n > 1:
+        starts[:, 1] = np.abs(starts[:, 1]) * (1.0 if branch == "+" else -1.0)
+    if near is not None:
+        starts[0] = near
+    return np.asarray(starts)
+
+
+def _reach(mechanism: Mechanism) -> float:
+    """Sum of all link offsets: no tip is farther out while prismatic joints stand at zero."""
+    offsets = np.linalg.norm(mechanism.placement_position, axis=1).sum()
+    return float(offsets + np.linalg.norm(mechanism.tool_position)) or 1.0

@@ -1,0 +1,75 @@
+"""Inverse kinematics of two parallel revolute joints in a plane, in closed form, on any number type."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from flexbase.checks import Array
+from flexbase.dynamics.kinematics import forward
+from flexbase.model.mechanism import Mechanism
+from flexbase.model.task import Task
+
+
+class TwoJointArm(NamedTuple):
+    """Geometry in the plane of the task, with the base at rest.
+
+    shoulder : position of the first joint, shape (2,)
+    upper, fore : lengths from joint to joint and from joint to tip
+    upper_angle, fore_angle : directions of both at zero joint angles
+    sense : +1 if the joints turn the first task axis towards the second, else -1
+    """
+
+    shoulder: Array
+    upper: float
+    fore: float
+    upper_angle: float
+    fore_angle: float
+    sense: float
+
+
+def two_joint_arm(mechanism: Mechanism, task: Task, base_rest: Array) -> TwoJointArm | None:
+    """The arm's planar geometry, or None where it is not two parallel joints that move two task positions."""
+    m = len(base_rest)
+    rows = task.indices
+    if mechanism.N - m != 2 or len(rows) != 2 or max(rows) > 2 or "prismatic" in mechanism.joint_types[m:]:
+        return None
+    frames = forward(mechanism, (*map(float, base_rest), 0.0, 0.0))
+    first, second = frames.motions[m:]
+    normal = np.cross(np.eye(3)[rows[0]], np.eye(3)[rows[1]])
+    axis = np.array(first.angular)
+    sense = float(np.sign(axis @ normal))
+    if not (np.allclose(axis, sense * normal, atol=1e-12) and np.allclose(axis, second.angular, atol=1e-12)):
+        return None
+    plane = list(rows)
+    shoulder, elbow = (np.cross(axis, joint.linear)[plane] for joint in (first, second))
+    upper, fore = elbow - shoulder, np.array(frames.tool_position)[plane] - elbow
+    return TwoJointArm(
+        shoulder,
+        float(np.hypot(*upper)),
+        float(np.hypot(*fore)),
+        float(np.arctan2(upper[1], upper[0])),
+        float(np.arctan2(fore[1], fore[0])),
+        sense,
+    )
+
+
+def solve_two_joint_arm(arm: TwoJointArm, x: Array, y: Array, branch: str) -> tuple[Array, Array, Array]:
+    """Joint angles in (-pi, pi] that bring the tip to (x, y), and the elbow's cosine.
+
+    Out of reach where the cosine leaves [-1, 1]; the angles there are those of the nearest reach.
+    """
+    dx, dy = x - arm.shoulder[0], y - arm.shoulder[1]
+    cosine = (dx * dx + dy * dy - arm.upper**2 - arm.fore**2) / (2.0 * arm.upper * arm.fore)
+    elbow = np.arccos(np.clip(cosine, -1.0, 1.0)) * (1.0 if branch == "+" else -1.0)
+    bend = arm.sense * elbow
+    direction = np.arctan2(dy, dx) - np.arctan2(arm.fore * np.sin(bend), arm.upper + arm.fore * np.cos(bend))
+    first = arm.sense * (direction - arm.upper_angle)
+    second = elbow - arm.sense * (arm.fore_angle - arm.upper_angle)
+    return _wrapped(first), _wrapped(second), cosine
+
+
+def _wrapped(angle: Array) -> Array:
+    """The same angle in (-pi, pi]."""
+    return np.asarray(np.pi - np.mod(np.pi - angle, 2.0 * np.pi))

@@ -1,0 +1,57 @@
+"""What can go wrong, as types: the input is wrong, the answer is no, or a package is missing.
+
+A message names the thing, its value, the bound and the mend, in one or two lines.
+"""
+
+from __future__ import annotations
+
+import difflib
+import importlib
+from collections.abc import Iterable
+from types import ModuleType
+
+
+class FlexbaseError(Exception):
+    """Root of all errors that flexbase raises on purpose."""
+
+
+class InputError(FlexbaseError):
+    """Something that the user gave is wrong: a file, a field, a value, a pose."""
+
+
+class Unreachable(InputError):
+    """No arm configuration brings the tip to the asked target."""
+
+
+class SingularArm(InputError):
+    """The arm Jacobian has lost rank at this pose, so task forces do not determine the motion."""
+
+
+class Infeasible(FlexbaseError):
+    """The question was understood and the answer is no: no such design exists."""
+
+
+class MissingExtra(FlexbaseError):
+    """An optional package is not installed; the message names the extra that brings it."""
+
+
+class FlexbaseWarning(UserWarning):
+    """Accepted, but the user should know."""
+
+
+def import_extra(module: str, extra: str) -> ModuleType:
+    """Import an optional package, or say which extra of flexbase brings it."""
+    try:
+        return importlib.import_module(module)
+    except ImportError as missing:
+        message = f'{module} is not installed. Install it with: pip install "flexbase[{extra}]"'
+        raise MissingExtra(message) from missing
+
+
+def nearest_name(name: str, valid: Iterable[str]) -> str:
+    """Return ' Did you mean "..."?' for the valid name closest to a wrong one, and the list otherwise."""
+    names = [str(candidate) for candidate in valid]
+    close = difflib.get_close_matches(str(name), names, n=1, cutoff=0.6)
+    if close:
+        return f'Did you mean "{close[0]}"?'
+    return "Valid: " + ", ".join(names) + "." if names else "None is valid here."

@@ -1,0 +1,1 @@
+"""Linear models of a pose: reduced form, modes, loops, margins."""

@@ -1,0 +1,96 @@
+"""From a pose to its linear models: the full second-order system and the reduced form."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from flexbase.checks import Array, check_symmetric, finite_array
+from flexbase.errors import InputError
+from flexbase.linear.reduced import reduce_arm
+from flexbase.linear.second_order import SecondOrder
+from flexbase.plant import Pose
+
+
+class HasGain(Protocol):
+    """Anything with a mode shaping matrix: a `Compensator`."""
+
+    @property
+    def E(self) -> Array:
+        """Constant gain on the joint accelerations, shape (n, n)."""
+        ...
+
+
+class Gain(NamedTuple):
+    """A bare mode shaping matrix."""
+
+    E: Array
+
+
+class ReducedArrays(NamedTuple):
+    """The reduced form of one pose as arrays; see `flexbase.linear.reduced.Reduced`."""
+
+    R0: Array
+    U: Array
+    V: Array
+    S: Array
+    W: Array
+
+
+def gain_of(pose: Pose, compensator: HasGain | None) -> Array:
+    """E of a compensator, or zero. Raises InputError where its size does not fit the arm."""
+    n = pose.arm.n
+    if compensator is None:
+        return np.zeros((n, n))
+    E = finite_array("compensator E", compensator.E)
+    if E.shape != (n, n):
+        raise InputError(f"compensator: E has shape {E.shape}, but {pose.plant.name} has {n} arm joints.")
+    return check_symmetric("compensator E", E, "")
+
+
+def modified_inertia(pose: Pose, E: Array) -> Array:
+    """M - blkdiag(0, E), shape (N, N).  [U03 eq 11]"""
+    M = pose.M.copy()
+    M[pose.arm.m :, pose.arm.m :] -= E
+    return M
+
+
+def check_definite_inertia(pose: Pose, E: Array) -> Array:
+    """M - blkdiag(0, E), positive definite. Raises InputError otherwise."""
+    M = modified_inertia(pose, E)
+    smallest = float(np.linalg.eigvalsh(M)[0])
+    if smallest <= 0.0:
+        raise InputError(
+            f"compensator: M - E is not positive definite at q = {np.round(pose.q, 4).tolist()} (smallest eigenvalue "
+            f"{smallest:.4g}), so the arm would run away. Use it nearer to the pose it was designed for."
+        )
+    return M
+
+
+def linearise(pose: Pose, compensator: HasGain | None = None) -> SecondOrder:
+    """The linear model about a pose: task force f to task displacement y.  [U03 eq 3-4, 11]
+
+    Keeps base damping and stiffness, gravity stiffness and the compensator. Raises InputError if M - E is indefinite.
+    """
+    arm = pose.arm
+    rows = arm.task.rows
+    B = np.vstack([np.zeros((arm.m, arm.k)), pose.J[:, arm.m :].T])
+    return SecondOrder(
+        M=check_definite_inertia(pose, gain_of(pose, compensator)),
+        D=pose.D,
+        K=pose.K,
+        B=B,
+        C=pose.J,
+        joint_names=arm.mechanism.joint_names,
+        input_names=tuple(f"f_{row}" for row in rows),
+        output_names=rows,
+    )
+
+
+def reduced_arrays(pose: Pose, E: Array) -> ReducedArrays:
+    """The reduced form of a pose under the gain E.  [theory §3]"""
+    arm = pose.arm
+    reduced = reduce_arm(pose.M.tolist(), pose.J.tolist(), arm.m, E.tolist())
+    shapes = ((arm.k, arm.k), (arm.k, arm.m), (arm.k, arm.m), (arm.m, arm.m), (arm.n, arm.m))
+    return ReducedArrays(*(np.array(part).reshape(shape) for part, shape in zip(reduced[:5], shapes, strict=True)))

@@ -1,0 +1,246 @@
+"""Modal analysis of a pose: frequencies, damping, residues, the distance from positive realness.  [theory §3, §4]"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from flexbase.checks import Array
+from flexbase.errors import FlexbaseWarning
+from flexbase.linear.linearise import (
+    HasGain,
+    ReducedArrays,
+    check_definite_inertia,
+    gain_of,
+    linearise,
+    reduced_arrays,
+)
+from flexbase.linear.quadratic_eigenproblem import Pole, RealShapes, damped_poles, real_shapes
+from flexbase.linear.reduced import RealMode, alignment, robustness
+from flexbase.plant import Pose
+
+POSITIVE_REAL = 1e-8  # relative passivity shortage (1 - cos)/2 up to which a residue counts as positive  [theory §5]
+ONE_JOINT = "One base joint: exact, at any damping."
+UNDAMPED = "Undamped base: exact in the limit of vanishing damping."
+PROPORTIONAL = "Proportional damping: positive residues are sufficient, not necessary."
+INDICATOR = "Non-proportional damping: the residues are an indicator only, neither necessary nor sufficient."
+GRAVITY = "Gravity stiffness couples arm and base: the residues of the base modes are an indicator only."
+RIGID = "Rigid base: no vibration mode."
+
+
+@dataclass(frozen=True, eq=False)
+class Mode:
+    """One vibration mode: (R' s + R) / (s^2 + 2 zeta omega s + omega^2) in P(s).  [U03 eq 5-7, theory §3]
+
+    frequency : omega = |l| [rad/s]
+    damping_ratio : zeta; above 1 the two poles are real
+    residue : R, shape (k, k)
+    residue_s : R', zero when the damping is proportional, shape (k, k)
+    robustness : w = lambda_min(R + R^T)  [U03 eq 9]
+    alignment : cos(a, b) for R = a b^T; trace(R) over the sum of its singular values otherwise; None if R = 0
+    shape : joint displacements, largest one 1, shape (N,), complex when damping is not proportional
+    participation : share of each base joint in the mode's strain energy, shape (m,)
+    label : the base joints that take part most
+    """
+
+    frequency: float
+    damping_ratio: float
+    residue: Array
+    residue_s: Array
+    robustness: float
+    alignment: float | None
+    shape: np.ndarray
+    participation: Array
+    label: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain numbers, with units in the names."""
+        return {
+            "frequency_rad_s": self.frequency,
+            "damping_ratio": self.damping_ratio,
+            "residue": self.residue.tolist(),
+            "residue_s": self.residue_s.tolist(),
+            "robustness": self.robustness,
+            "alignment": self.alignment,
+            "label": self.label,
+            "participation": self.participation.tolist(),
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class Modes:
+    """All vibration modes of a pose, slowest first, and the rigid mode.
+
+    rigid_mode : R_0, shape (k, k)  [U03 eq 6]
+    positive_real : the simple verdict by residues; `caveat` says how far it may be trusted
+    """
+
+    pose: Pose
+    modes: tuple[Mode, ...]
+    rigid_mode: Array
+    positive_real: bool
+    caveat: str
+
+    def __len__(self) -> int:
+        return len(self.modes)
+
+    def __getitem__(self, index: int) -> Mode:
+        return self.modes[index]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain numbers, with units in the names."""
+        return {
+            "q": self.pose.q.tolist(),
+            "tip": self.pose.tip.tolist(),
+            "modes": [mode.to_dict() for mode in self.modes],
+            "rigid_mode": self.rigid_mode.tolist(),
+            "positive_real": self.positive_real,
+            "positive_real_caveat": self.caveat,
+        }
+
+    def summary(self) -> str:
+        """A table in plain text."""
+        lines = [f"{self.pose.plant.name} at tip {np.round(self.pose.tip, 6).tolist()}"]
+        lines += [
+            f"  {mode.label}: {mode.frequency:.4f} rad/s ({mode.frequency / (2.0 * np.pi):.3f} Hz), "
+            f"zeta {mode.damping_ratio:.4g}, w {mode.robustness:.4g}, "
+            f"alignment {'undefined' if mode.alignment is None else f'{mode.alignment:.6f}'}"
+            for mode in self.modes
+        ]
+        verdict = "positive real" if self.positive_real else "not positive real"
+        return "\n".join([*lines, f"  {verdict}. {self.caveat}"])
+
+
+def modes(pose: Pose, compensator: HasGain | None = None) -> Modes:
+    """Vibration modes of a pose, with or without a compensator.
+
+    Assumes distinct poles. Without gravity the reduced form of theory §3 is used, which is exact; with gravity the full
+    2N state space, and the modes returned are the m in which the base stores most strain energy.
+    Warns where a mode is overdamped. Raises InputError if M - E is not positive definite.
+    """
+    E = gain_of(pose, compensator)
+    check_definite_inertia(pose, E)
+    analyse = _with_gravity if pose.arm.has_gravity else _reduced
+    found, rigid_mode, caveat = analyse(pose, E, compensator)
+    overdamped = [mode.label for mode in found if mode.damping_ratio >= 1.0]
+    if overdamped:
+        warnings.warn(
+            f"{pose.plant.name}: overdamped base, real poles at {', '.join(overdamped)}.", FlexbaseWarning, stacklevel=2
+        )
+    verdict = all(_is_positive(mode) for mode in found)
+    return Modes(pose, tuple(found), rigid_mode, verdict, caveat)
+
+
+def _reduced(pose: Pose, E: Array, _: HasGain | None) -> tuple[list[Mode], Array, str]:
+    reduced, base = reduced_arrays(pose, E), pose.arm.base
+    if base.m == 0:
+        return [], reduced.R0, RIGID
+    real = real_shapes(reduced.S, base.damping, base.stiffness)
+    if real is not None:
+        caveat = ONE_JOINT if base.m == 1 else PROPORTIONAL if base.damping.any() else UNDAMPED
+        return [_real_mode(pose, reduced, real, i) for i in range(base.m)], reduced.R0, caveat
+    poles = damped_poles(reduced.S, base.damping, base.stiffness)
+    found = [
+        _damped_mode(pose, pole, -reduced.U @ pole.shape, reduced.V @ pole.shape, _follow(reduced, pole.shape))
+        for pole in poles
+    ]
+    return found, reduced.R0, INDICATOR
+
+
+def _with_gravity(pose: Pose, E: Array, compensator: HasGain | None) -> tuple[list[Mode], Array, str]:
+    """Full state space: damping and stiffness no longer act on the base alone."""
+    system, m = linearise(pose, compensator), pose.arm.m
+    if m == 0:
+        return [], reduced_arrays(pose, E).R0, RIGID
+    poles = damped_poles(system.M, system.D, system.K)
+    poles.sort(key=lambda pole: -_base_energy_share(pole, system.M, pose.arm.base.stiffness))
+    base_poles = sorted(poles[:m], key=lambda pole: abs(pole.value))
+    found = [_damped_mode(pose, p, system.C @ p.shape, system.B.T @ p.shape, p.shape) for p in base_poles]
+    leading = system.C @ np.linalg.solve(
+        system.M, system.B
+    )  # of P(s) s^2 as s grows: rigid and vibration modes together
+    vibration = sum((mode.residue - 2.0 * mode.damping_ratio * mode.frequency * mode.residue_s for mode in found), 0.0)
+    return found, leading - vibration, GRAVITY
+
+
+def _real_mode(pose: Pose, reduced: ReducedArrays, real: RealShapes, index: int) -> Mode:
+    phi, frequency = real.shapes[:, index], float(np.sqrt(real.stiffness[index]))
+    mode = RealMode(
+        tuple((-reduced.U @ phi).tolist()),
+        tuple((reduced.V @ phi).tolist()),
+        frequency,
+        float(real.damping[index]) / (2.0 * frequency),
+    )
+    vanishes = not any(mode.a) or not any(mode.b)
+    participation = _participation(pose, phi)
+    return Mode(
+        frequency=frequency,
+        damping_ratio=mode.damping_ratio,
+        residue=np.outer(mode.a, mode.b),
+        residue_s=np.zeros((pose.arm.k, pose.arm.k)),
+        robustness=float(robustness(mode.a, mode.b)),
+        alignment=None if vanishes else float(alignment(mode.a, mode.b)),
+        shape=_scaled(_follow(reduced, phi)),
+        participation=participation,
+        label=_label(pose, participation),
+    )
+
+
+def _damped_mode(pose: Pose, pole: Pole, out: np.ndarray, into: np.ndarray, shape: np.ndarray) -> Mode:
+    """(out into^T)/(s - l) and its conjugate, joined; a real pole stands alone and gets zeta = 1."""
+    dyad = np.outer(out, into)
+    pair = 2.0 if pole.value.imag > 0.0 else 1.0
+    residue = -pair * np.real(np.conj(pole.value) * dyad)
+    singular_values = np.linalg.svd(residue, compute_uv=False).sum()
+    participation = _participation(pose, shape[: pose.arm.m])
+    return Mode(
+        frequency=abs(pole.value),
+        damping_ratio=-pole.value.real / abs(pole.value),
+        residue=residue,
+        residue_s=pair * np.real(dyad),
+        robustness=float(np.linalg.eigvalsh(residue + residue.T)[0]),
+        alignment=float(np.trace(residue) / singular_values) if singular_values > 0.0 else None,
+        shape=_scaled(shape),
+        participation=participation,
+        label=_label(pose, participation),
+    )
+
+
+def _follow(reduced: ReducedArrays, base_shape: np.ndarray) -> np.ndarray:
+    """All joints of a mode: the arm moves by -W psi when the base moves by psi."""
+    return np.concatenate([base_shape, -reduced.W @ base_shape])
+
+
+def _scaled(shape: np.ndarray) -> np.ndarray:
+    return np.asarray(shape / shape[np.argmax(np.abs(shape))])
+
+
+def _participation(pose: Pose, base_shape: np.ndarray) -> Array:
+    energy = np.real(np.conj(base_shape) * (pose.arm.base.stiffness @ base_shape))
+    return np.asarray(energy / energy.sum())
+
+
+def _label(pose: Pose, participation: Array) -> str:
+    """Base joints by their share of the strain energy, until nine tenths are named."""
+    names, named, label = pose.arm.mechanism.joint_names, 0.0, []
+    for joint in np.argsort(-participation):
+        label.append(f"{names[joint]} {100.0 * participation[joint]:.0f} %")
+        named += participation[joint]
+        if named >= 0.9:
+            break
+    return ", ".join(label)
+
+
+def _base_energy_share(pole: Pole, M: Array, base_stiffness: Array) -> float:
+    base = pole.shape[: len(base_stiffness)]
+    strain = np.real(np.conj(base) @ base_stiffness @ base)
+    kinetic = abs(pole.value) ** 2 * np.real(np.conj(pole.shape) @ M @ pole.shape)
+    return float(strain / kinetic)
+
+
+def _is_positive(mode: Mode) -> bool:
+    """R = R^T >= 0 up to a relative shortage of POSITIVE_REAL; a mode that the tip cannot see or drive is positive."""
+    return mode.alignment is None or 0.5 * (1.0 - mode.alignment) <= POSITIVE_REAL

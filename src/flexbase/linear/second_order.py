@@ -1,0 +1,68 @@
+"""The central object: a linear second-order system, and its state space."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flexbase.checks import Array
+from flexbase.errors import import_extra
+
+
+class StateSpace(NamedTuple):
+    """x' = A x + B u, y = C x + D u."""
+
+    A: Array
+    B: Array
+    C: Array
+    D: Array
+
+
+@dataclass(frozen=True, eq=False)
+class SecondOrder:
+    """M q'' + D q' + K q = B f,  y = C q.  [U03 eq 3-4]
+
+    M, D, K : shape (N, N), M invertible
+    B : shape (N, inputs); C : shape (outputs, N)
+    joint_names, input_names, output_names : for labels and for the named signals of `to_control`
+    """
+
+    M: Array
+    D: Array
+    K: Array
+    B: Array
+    C: Array
+    joint_names: tuple[str, ...]
+    input_names: tuple[str, ...]
+    output_names: tuple[str, ...]
+
+    def transfer_function(self, s: ArrayLike) -> Any:
+        """P(s) = C (M s^2 + D s + K)^-1 B at complex frequencies s, shape (..., outputs, inputs)."""
+        s = np.asarray(s, dtype=complex)[..., None, None]
+        return self.C @ np.linalg.solve(
+            self.M * s * s + self.D * s + self.K,
+            np.broadcast_to(self.B.astype(complex), (*s.shape[:-2], *self.B.shape)),
+        )
+
+    def state_space(self) -> StateSpace:
+        """State x = [q; q'], of order 2N."""
+        N = len(self.M)
+        zero, eye = np.zeros((N, N)), np.eye(N)
+        lower = np.linalg.solve(self.M, np.hstack([-self.K, -self.D, self.B]))
+        A = np.vstack([np.hstack([zero, eye]), lower[:, : 2 * N]])
+        B = np.vstack([np.zeros_like(self.B), lower[:, 2 * N :]])
+        C = np.hstack([self.C, np.zeros_like(self.C)])
+        return StateSpace(A, B, C, np.zeros((len(self.C), self.B.shape[1])))
+
+    def to_control(self) -> Any:
+        """The same system as a `control.StateSpace` with named signals. Needs the extra "control"."""
+        control = import_extra("control", "control")
+        return control.ss(
+            *self.state_space(),
+            states=[*self.joint_names, *(f"{name}_rate" for name in self.joint_names)],
+            inputs=list(self.input_names),
+            outputs=list(self.output_names),
+        )

@@ -1,0 +1,1 @@
+"""Measures of a configuration, one file each."""

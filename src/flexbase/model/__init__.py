@@ -1,0 +1,1 @@
+"""What a project file says, as frozen arrays."""

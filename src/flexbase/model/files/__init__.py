@@ -1,0 +1,1 @@
+"""Project files: their words, their reading, their faults."""

@@ -1,0 +1,115 @@
+"""The words of a project file: tables, keys, types and bounds. Editors get them as a JSON schema."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
+
+
+def _numbers_or_rows(value: Any) -> Any:
+    """Accept a list of numbers or a list of rows of numbers, and say plainly what else was found."""
+    if not isinstance(value, list):
+        raise ValueError(f"{shown(value)} is not a list of numbers")
+    for entry in value:
+        for number in entry if isinstance(entry, list) else [entry]:
+            if isinstance(number, bool) or not isinstance(number, int | float):
+                raise ValueError(f"{shown(number)} is not a number")
+            if number != number or number in (float("inf"), float("-inf")):
+                raise ValueError(f"{number} is not finite")
+    lengths = {len(entry) if isinstance(entry, list) else None for entry in value}
+    if len(lengths) > 1:
+        raise ValueError("its rows differ in length")
+    return value
+
+
+def shown(value: Any) -> str:
+    """A value as TOML writes it, cut to a line."""
+    if isinstance(value, bool):
+        return f"{str(value).lower()} (a boolean)"
+    if isinstance(value, str):
+        return f'"{value[:60]}" (a string)'
+    if isinstance(value, dict):
+        return "a table"
+    if isinstance(value, list):
+        return f"{str(value)[:60]} (a list)"
+    return str(value)
+
+
+_NUMBERS = {"type": "array", "items": {"type": "number"}}
+Numbers = Annotated[list[Any], BeforeValidator(_numbers_or_rows), WithJsonSchema(_NUMBERS)]
+NumbersOrRows = Annotated[
+    list[Any],
+    BeforeValidator(_numbers_or_rows),
+    WithJsonSchema({"anyOf": [_NUMBERS, {"type": "array", "items": _NUMBERS}]}),
+]
+
+
+class Table(BaseModel):
+    """A TOML table: unknown keys are refused, nothing is converted, numbers are finite."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
+
+
+class LinkTable(Table):
+    """One planar link. Its x axis points along it; revolute joints turn about z, prismatic ones slide along `axis`."""
+
+    joint: str = Field(min_length=1, description="name of the joint that moves this link")
+    length: float = Field(ge=0, description="from this joint to the next, or to the tool [m]")
+    mass: float = Field(gt=0, description="[kg]")
+    com: float = Field(description="centre of mass, distance from the joint along the link [m]")
+    inertia: float = Field(ge=0, description="about the centre of mass [kg m^2]")
+    type: Literal["revolute", "prismatic"] = Field("revolute", description="kind of joint")
+    axis: Numbers = Field([1.0, 0.0], description="prismatic joints: direction in the previous link's x-y plane")
+
+
+class PayloadTable(Table):
+    """A body held at the tool, in the tool frame."""
+
+    mass: float = Field(gt=0, description="[kg]")
+    com: Numbers = Field([0.0, 0.0, 0.0], description="centre of mass from the tool [m], 3 numbers")
+    inertia: Numbers = Field(
+        [0.0, 0.0, 0.0], description="about its centre of mass [kg m^2]: xx yy zz, or xx yy zz xy xz yz"
+    )
+
+
+class RobotTable(Table):
+    """The chain, base joints first."""
+
+    links: list[LinkTable] = Field(min_length=1, description="planar links, base first")
+    payload: PayloadTable | None = None
+
+
+class BaseTable(Table):
+    """The passive joints: the first ones of the chain."""
+
+    joints: list[str] = Field(description="names of the passive joints, in chain order")
+    stiffness: NumbersOrRows = Field([], description="one for each base joint, or a symmetric positive definite matrix")
+    damping: NumbersOrRows = Field([], description="one for each base joint, or a positive semidefinite matrix")
+    equilibrium: Numbers | None = Field(None, description="where the springs rest [m or rad]; zero if left out")
+
+
+class TaskTable(Table):
+    """What is controlled."""
+
+    rows: list[Literal["x", "y", "z", "rx", "ry", "rz"]] = Field(min_length=1, description="world axes, in task order")
+    branch: Literal["+", "-"] = Field("+", description="default elbow: + is 0 < elbow angle < pi")
+
+
+class ControlTable(Table):
+    """Default task gains: f = -(stiffness y + damping y')."""
+
+    stiffness: NumbersOrRows = Field(description="one for each task row [N/m or N m/rad], or a matrix")
+    damping: NumbersOrRows = Field(description="one for each task row [N s/m or N m s/rad], or a matrix")
+
+
+class ProjectFile(Table):
+    """A flexbase project: an arm on a compliant base, its task and its default gains. SI units."""
+
+    schema_version: Literal[1] = Field(1, description="version of this file format")
+    name: str = Field(min_length=1, description="how results name this machine")
+    gravity: Numbers = Field([0.0, 0.0, 0.0], description="free-fall acceleration in world axes [m/s^2]")
+    robot: RobotTable
+    base: BaseTable | None = Field(None, description="left out: a rigid base")
+    task: TaskTable
+    control: ControlTable | None = None

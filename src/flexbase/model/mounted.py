@@ -1,0 +1,51 @@
+"""An arm on a compliant base, with its task: everything that a project file says."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from flexbase.checks import Array
+from flexbase.model.base import Base
+from flexbase.model.mechanism import Mechanism
+from flexbase.model.task import Gains, Task
+
+
+@dataclass(frozen=True, eq=False)
+class MountedArm:
+    """A mechanism whose first m joints are the base.
+
+    gravity : acceleration of free fall in world axes, shape (3,) [m/s^2]; zero is the paper's case
+    gains : default task gains, or None
+    """
+
+    name: str
+    mechanism: Mechanism
+    base: Base
+    task: Task
+    gravity: Array
+    gains: Gains | None = None
+
+    @property
+    def m(self) -> int:
+        """Number of passive base joints."""
+        return self.base.m
+
+    @property
+    def N(self) -> int:
+        """Number of joints, base and arm."""
+        return self.mechanism.N
+
+    @property
+    def n(self) -> int:
+        """Number of actuated arm joints."""
+        return self.N - self.m
+
+    @property
+    def k(self) -> int:
+        """Number of task rows."""
+        return self.task.k
+
+    @property
+    def has_gravity(self) -> bool:
+        """Whether gravity acts."""
+        return bool(self.gravity.any())

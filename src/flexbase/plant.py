@@ -1,0 +1,177 @@
+"""What a user holds: a `Plant` (an arm on its base) and a `Pose` of it."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flexbase.checks import Array, check_length, finite_array
+from flexbase.dynamics.inertia import mass_matrix
+from flexbase.dynamics.inverse_kinematics import arm_angles
+from flexbase.dynamics.kinematics import Frames, forward, task_jacobian
+from flexbase.dynamics.statics import gravity_stiffness, gravity_torques, static_base
+from flexbase.dynamics.task import task_error, task_value
+from flexbase.errors import FlexbaseWarning, InputError, SingularArm, Unreachable
+from flexbase.model.files.project import load_project
+from flexbase.model.mounted import MountedArm
+from flexbase.model.task import check_branch
+from flexbase.trace.algebra import unstack
+
+SINGULAR = 1e-8  # smallest to largest singular value of Jv, below which the arm counts as singular
+ILL_CONDITIONED = 1e12  # condition number of M above which results lose most of their digits
+
+
+@dataclass(frozen=True, eq=False)
+class Plant:
+    """An arm on a compliant base, ready to be asked. Made by `load`."""
+
+    arm: MountedArm
+
+    @property
+    def name(self) -> str:
+        """The project's name."""
+        return self.arm.name
+
+    def at(self, joints: ArrayLike) -> Pose:
+        """The pose with these joints: the n arm joints, or all N, base first; the base values are then its equilibrium.
+
+        Under gravity the base sags from its equilibrium. Raises InputError, SingularArm.
+        """
+        given = np.atleast_1d(finite_array("joints", joints))
+        m, n, N = self.arm.m, self.arm.n, self.arm.N
+        if given.shape not in ((n,), (N,)):
+            raise InputError(
+                f"joints: {given.size} values given, {n} (the arm) or {N} (base first) needed: "
+                f"{', '.join(self.arm.mechanism.joint_names)}."
+            )
+        equilibrium = given[:m] if given.size == N else self.arm.base.equilibrium
+        return self._pose(given[given.size - n :], equilibrium)
+
+    def at_tip(self, target: ArrayLike, branch: str | None = None, near: ArrayLike | None = None) -> Pose:
+        """The pose whose resting tip is at a target, one value for each task row [m, rad].
+
+        branch : sign of the elbow, "+" or "-"; the project's own if left out
+        near : n arm joints; of several solutions on the branch the nearest to these is taken
+        Raises Unreachable with the distance that is missing, SingularArm, InputError.
+        """
+        wanted = check_length("tip", target, self.arm.k, f"one for each task row, {' '.join(self.arm.task.rows)}")
+        side = check_branch(branch or self.arm.task.branch)
+        centre = None if near is None else check_length("near", near, self.arm.n, "one for each arm joint")
+        base = self.arm.base.equilibrium
+        for _ in range(60):  # without gravity the first pass is exact; with it, the sag contracts
+            found, missing = arm_angles(self.arm.mechanism, self.arm.task, base, wanted, side, centre)
+            if found is None:
+                raise Unreachable(
+                    f"tip: {wanted.tolist()} is out of reach of {self.name} on branch {side}, by "
+                    f"{missing:.4g} m (or rad). "
+                    "Give a nearer target or the other branch."
+                )
+            sagged = static_base(self.arm, found, self.arm.base.equilibrium)
+            if np.allclose(sagged, base, rtol=0.0, atol=1e-15):
+                return self._pose(found, self.arm.base.equilibrium)
+            base, centre = sagged, found
+        raise Unreachable(f"tip: the sag of {self.name} at {wanted.tolist()} does not converge. Give a stiffer base.")
+
+    def _pose(self, arm_joints: Array, equilibrium: Array) -> Pose:
+        q = np.concatenate([static_base(self.arm, arm_joints, equilibrium), arm_joints])
+        pose = Pose(self, q, np.asarray(equilibrium))
+        _check_inertia(pose)
+        _check_regular(pose)
+        return pose
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """A plant at rest in one configuration.
+
+    q : joint positions at rest, base first, shape (N,) [rad or m]
+    equilibrium : where the base springs are at rest, shape (m,); differs from q[:m] only under gravity
+    """
+
+    plant: Plant
+    q: Array
+    equilibrium: Array
+
+    @property
+    def arm(self) -> MountedArm:
+        """The arm on its base."""
+        return self.plant.arm
+
+    @cached_property
+    def frames(self) -> Frames:
+        """Bodies, joint motions and tool, in world axes."""
+        return forward(self.arm.mechanism, tuple(self.q.tolist()))
+
+    @cached_property
+    def M(self) -> Array:
+        """Inertia matrix, shape (N, N)."""
+        return np.array(mass_matrix(self.frames))
+
+    @cached_property
+    def J(self) -> Array:
+        """Task Jacobian [Jp, Jv], shape (k, N)."""
+        return np.array(task_jacobian(self.frames, self.arm.task.indices))
+
+    @cached_property
+    def K(self) -> Array:
+        """Stiffness of base and gravity, shape (N, N)."""
+        K = gravity_stiffness(self.arm, self.q)
+        K[: self.arm.m, : self.arm.m] += self.arm.base.stiffness
+        return K
+
+    @cached_property
+    def D(self) -> Array:
+        """Damping, shape (N, N)."""
+        D = np.zeros((self.arm.N, self.arm.N))
+        D[: self.arm.m, : self.arm.m] = self.arm.base.damping
+        return D
+
+    @cached_property
+    def tip(self) -> Array:
+        """Task coordinates of the tip, shape (k,)."""
+        return task_value(self.frames, self.arm.task)
+
+    @cached_property
+    def holding_torque(self) -> Array:
+        """Arm torques that hold the pose against gravity, shape (n,)."""
+        return gravity_torques(self.arm, self.q)[self.arm.m :]
+
+    def tip_error(self, q: Array) -> Array:
+        """Task error of other configurations, shape (..., N), against this pose, shape (..., k)."""
+        frames = forward(self.arm.mechanism, unstack(q, 1))
+        return task_error(frames, self.arm.task, self.tip)
+
+
+def load(robot: str | Path) -> Plant:
+    """Load a bundled robot by name, or a project file by path. Raises InputError."""
+    return Plant(load_project(robot))
+
+
+def _check_inertia(pose: Pose) -> None:
+    eigenvalues = np.linalg.eigvalsh(pose.M)
+    if eigenvalues[0] <= 0.0:
+        raise InputError(
+            f"{pose.plant.name}: the inertia matrix at q = {np.round(pose.q, 4).tolist()} is not positive definite "
+            f"(smallest eigenvalue {eigenvalues[0]:.3g}). Give the massless links a mass or an inertia."
+        )
+    if eigenvalues[-1] > ILL_CONDITIONED * eigenvalues[0]:
+        warnings.warn(
+            f"{pose.plant.name}: condition number of M is {eigenvalues[-1] / eigenvalues[0]:.2g}; "
+            "expect few correct digits.",
+            FlexbaseWarning,
+            stacklevel=4,
+        )
+
+
+def _check_regular(pose: Pose) -> None:
+    singular_values = np.linalg.svd(pose.J[:, pose.arm.m :], compute_uv=False)
+    if singular_values[-1] <= SINGULAR * singular_values[0]:
+        raise SingularArm(
+            f"{pose.plant.name}: the arm is singular at q = {np.round(pose.q, 4).tolist()} (singular values of Jv "
+            f"{singular_values[0]:.3g} to {singular_values[-1]:.3g}). Give a pose away from it."
+        )

@@ -1,0 +1,160 @@
+"""Move by joint tracking, then settle by task-space control, on the nonlinear plant.  [U03 §IV B]"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.integrate import DOP853
+
+from flexbase.checks import Array, choose
+from flexbase.control.joint_tracking import BANDWIDTH, JointTracking
+from flexbase.control.measured import Measured
+from flexbase.control.task_pd import TaskPD
+from flexbase.control.trajectories import LAWS, JointPath
+from flexbase.dynamics.kinematics import Frames, forward, task_jacobian
+from flexbase.dynamics.task import task_error
+from flexbase.errors import InputError
+from flexbase.linear.linearise import HasGain, gain_of
+from flexbase.model.task import Gains
+from flexbase.plant import Plant, Pose
+from flexbase.simulate.builtin import accelerations, keeps_inertia
+from flexbase.simulate.result import Run
+from flexbase.trace.algebra import Vector, matvec, stack, unstack
+
+RELATIVE, ABSOLUTE = 1e-8, 1e-10  # of the integrator, a step
+LARGEST_ERROR = 10.0  # m or rad of tip error: beyond, the run has diverged
+WHEN = ("settle", "always")
+
+
+class Law(Protocol):
+    """A control law: torques from what is measured."""
+
+    def torque(self, seen: Measured) -> Vector:
+        """Arm torques, n scalars (or batches)."""
+        ...
+
+
+def simulate(
+    plant: Plant,
+    start: Pose | ArrayLike,
+    goal: Pose | ArrayLike,
+    compensator: HasGain | None = None,
+    *,
+    gains: Gains | None = None,
+    switch: float = 0.1,
+    end: float = 0.4,
+    trajectory: str = "quintic",
+    compensate: str = "settle",
+    bandwidth: float = BANDWIDTH,
+    interval: float = 2e-4,
+) -> Run:
+    """Drive from rest at `start` to `goal`, each a pose or a tip target.
+
+    Until `switch` [s] the joints follow a straight path in joint space by inverse dynamics of the rigid arm; from then
+    to `end` the task-space PD loop with `gains` (the project's own if left out) settles the tip. The laws see the arm
+    joints and the tip error, never the base. E q_a'' is solved implicitly with the accelerations.
+
+    compensate : "settle", the compensator acts from `switch` on (it was designed for the goal); or "always"
+    interval : between samples of the result [s]
+    Raises InputError. A motion that diverges, or leaves M - E > 0, ends early and says so in `Run.stopped`.
+    """
+    here, there = (_as_pose(plant, pose) for pose in (start, goal))
+    gains = gains if gains is not None else plant.arm.gains
+    if gains is None:
+        raise InputError(f"{plant.name}: no task gains. Add a [control] table to the project, or give gains.")
+    if not 0.0 < switch < end or not 0.0 < interval <= end - switch:
+        raise InputError(f"times: 0 < switch ({switch:g}) < end ({end:g}) and interval ({interval:g}) > 0 are needed.")
+    if compensate not in WHEN:
+        raise InputError(f'compensate: "{compensate}" is unknown. Give one of {", ".join(WHEN)}.')
+    if not bandwidth > 0.0:
+        raise InputError(f"bandwidth: {bandwidth:g} rad/s must be above 0.")
+    E = None if compensator is None else gain_of(there, compensator)
+    m = plant.arm.m
+    path = JointPath(here.q[m:], there.q[m:], switch, choose("trajectory", trajectory, LAWS))
+    phases: list[tuple[Law, float, float, Array | None]] = [
+        (JointTracking(there, path, bandwidth), 0.0, switch, E if compensate == "always" else None),
+        (TaskPD(there, gains), switch, end, E),
+    ]
+    state, parts, stopped = np.concatenate([here.q, np.zeros(plant.arm.N)]), [], None
+    for law, begin, finish, gain in phases:
+        times, states, stopped = _integrate(there, law, gain, begin, finish, interval, state)
+        parts.append((times, states, _torques(there, law, gain, times, states)))
+        if stopped:
+            break
+        state = states[-1]
+    times, states, torques = (np.concatenate(pieces) for pieces in zip(*_without_doubled_ends(parts), strict=True))
+    N = plant.arm.N
+    error = task_error(forward(plant.arm.mechanism, tuple(states[:, :N].T)), plant.arm.task, there.tip)
+    return Run(here, there, times, states[:, :N], states[:, N:], error, torques, switch, E is not None, stopped)
+
+
+def _as_pose(plant: Plant, pose: Pose | ArrayLike) -> Pose:
+    return pose if isinstance(pose, Pose) else plant.at_tip(pose)
+
+
+def _integrate(
+    goal: Pose, law: Law, E: Array | None, begin: float, finish: float, interval: float, state: Array
+) -> tuple[Array, Array, str | None]:
+    """One phase: sample times from begin to finish, states there, and why it ended early."""
+    times = np.linspace(begin, finish, round((finish - begin) / interval) + 1)
+    states, taken = np.empty((len(times), len(state))), 1
+    states[0] = state
+    solver = DOP853(lambda t, x: _rate(goal, law, E, t, x), begin, state, finish, rtol=RELATIVE, atol=ABSOLUTE)
+    while (trouble := _trouble(goal, E, solver)) is None and solver.status == "running":
+        solver.step()
+        reached = int(np.searchsorted(times, solver.t, side="right"))
+        if reached > taken and solver.status != "failed":
+            states[taken:reached] = solver.dense_output()(times[taken:reached]).T
+            taken = reached
+    if trouble is not None:
+        return times[:taken], states[:taken], f"{trouble} at {solver.t:.4f} s"
+    states[-1] = solver.y
+    return times, states, None
+
+
+def _trouble(goal: Pose, E: Array | None, solver: DOP853) -> str | None:
+    """Why the run cannot go on, or None."""
+    q = solver.y[: goal.arm.N]
+    if solver.status == "failed":
+        return "the integrator gave up"
+    if not np.all(np.isfinite(solver.y)) or float(np.abs(goal.tip_error(q)).max()) > LARGEST_ERROR:
+        return "the motion diverged"
+    if not keeps_inertia(forward(goal.arm.mechanism, unstack(q, 1)), E):
+        return "M - E was no longer positive definite"
+    return None
+
+
+def _rate(goal: Pose, law: Law, E: Array | None, time: float, state: Array) -> Array:
+    N = goal.arm.N
+    q, rates = state[:N], state[N:]
+    frames, seen = _observe(goal, time, q, rates)
+    return np.concatenate([rates, accelerations(goal, frames, q, rates, stack(law.torque(seen)), E)])
+
+
+def _observe(goal: Pose, time: float | Array, q: Array, rates: Array) -> tuple[Frames, Measured]:
+    """Where the bodies truly are, and the part of it that a controller may see; one instant or a batch."""
+    arm = goal.arm
+    joints, speeds = unstack(q, 1), unstack(rates, 1)
+    frames = forward(arm.mechanism, joints)
+    tip_rate = matvec(task_jacobian(frames, arm.task.indices), speeds)
+    tip_error = unstack(task_error(frames, arm.task, goal.tip), 1)
+    return frames, Measured(time, joints[arm.m :], speeds[arm.m :], tip_error, tip_rate)
+
+
+def _torques(goal: Pose, law: Law, E: Array | None, times: Array, states: Array) -> Array:
+    """All that the drives deliver at each sample: the law's torque and E q_a''."""
+    N, m = goal.arm.N, goal.arm.m
+    q, rates = states[:, :N], states[:, N:]
+    frames, seen = _observe(goal, times, q, rates)
+    torque = stack(law.torque(seen))
+    if E is None:
+        return np.asarray(torque)
+    return np.asarray(torque + accelerations(goal, frames, q, rates, torque, E)[:, m:] @ E)
+
+
+def _without_doubled_ends(parts: Sequence[tuple[Array, ...]]) -> list[tuple[Array, ...]]:
+    """The first phase without its last sample, which is the second's first."""
+    return [tuple(array[:-1] for array in part) for part in parts[:-1]] + [parts[-1]]

@@ -1,0 +1,1 @@
+"""Questions that need design, simulation and sweeps together."""

@@ -1,0 +1,1 @@
+"""Maps: many configurations at once."""

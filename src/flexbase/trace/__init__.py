@@ -1,0 +1,1 @@
+"""Scalar algebra that runs on any number type; knows nothing of robots."""
