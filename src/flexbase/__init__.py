@@ -14,21 +14,28 @@ from flexbase.errors import (
 from flexbase.linear.linearise import linearise
 from flexbase.linear.modal import Mode, Modes, modes
 from flexbase.linear.second_order import SecondOrder
+from flexbase.measures import MEASURES
+from flexbase.measures.manipulability import Ellipsoid, Manipulability, manipulability
 from flexbase.model.task import Gains
 from flexbase.plant import Plant, Pose, load
 from flexbase.simulate import Run, simulate
+from flexbase.sweep import Chart, sweep
 
 __version__ = "0.1.0"
 
 __all__ = [
+    "MEASURES",
     "METHODS",
     "Certificate",
+    "Chart",
     "Compensator",
+    "Ellipsoid",
     "FlexbaseError",
     "FlexbaseWarning",
     "Gains",
     "Infeasible",
     "InputError",
+    "Manipulability",
     "MissingExtra",
     "Mode",
     "Modes",
@@ -43,6 +50,8 @@ __all__ = [
     "linearise",
     "load",
     "load_compensator",
+    "manipulability",
     "modes",
     "simulate",
+    "sweep",
 ]

@@ -13,6 +13,7 @@ from flexbase.design.registry import method
 from flexbase.errors import Infeasible, InputError
 from flexbase.linear.margins import arm_on_free_base
 from flexbase.linear.modal import modes
+from flexbase.measures.compensability import coupling
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
 
@@ -40,13 +41,11 @@ class Compensability(NamedTuple):
 def compensability(pose: Pose) -> Compensability:
     """The compensability test at a pose. Raises InputError unless m = 1 and k = n."""
     _check_scope(pose)
-    Jp, Jv = pose.J[:, 0], pose.J[:, 1:]
-    z, y, Mpp = np.asarray(np.linalg.solve(Jv, Jp), dtype=float), -pose.M[1:, 0], float(pose.M[0, 0])
-    product = float(y @ z)
-    remaining = Mpp + min(product, 0.0)
+    z, y, product = coupling(pose.M.tolist(), pose.J.tolist())
+    remaining = float(pose.M[0, 0]) + min(product, 0.0)
     solvable = product != 0.0 and remaining > 0.0
     slowest = float(np.sqrt(pose.arm.base.stiffness[0, 0] / remaining)) if solvable else float("inf")
-    return Compensability(z, y, product, slowest)
+    return Compensability(np.array(z), np.array(y), product, slowest)
 
 
 @method("exact", "one base joint, k = n: both targets by one small solve; least gain or least algebraic-loop radius")

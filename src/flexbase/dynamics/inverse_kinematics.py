@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.stats import qmc
 
 from flexbase.checks import Array
@@ -14,6 +15,7 @@ from flexbase.model.task import Task
 from flexbase.trace.algebra import stack
 
 STARTS = 128
+FEW_STARTS = 8
 STEPS = 80
 LARGEST_STEP = 0.5  # rad or m, a Newton step
 TOLERANCE = 1e-11  # of the arm's reach: rounding in the kinematics is some 1e-15 of it
@@ -36,17 +38,44 @@ def arm_angles(
         return (np.array([first, second]), 0.0) if reached else (None, shortfall)
     starts = _starts(mechanism, len(base_rest), branch, near)
     found, errors = newton(mechanism, task, base_rest, starts, target)
-    good = errors <= TOLERANCE * _reach(mechanism)
-    if found.shape[1] > 1 and mechanism.joint_types[len(base_rest) + 1] == "revolute":
-        good &= (np.sin(found[:, 1]) >= 0.0) == (branch == "+")
+    good = (errors <= TOLERANCE * reach(mechanism)) & _on_branch(mechanism, len(base_rest), found, branch)
     if not good.any():
         return None, float(errors.min())
     centre = np.zeros(found.shape[1]) if near is None else near
     return found[good][np.argmin(np.linalg.norm(found[good] - centre, axis=1))], 0.0
 
 
+def arm_angles_of_many(
+    mechanism: Mechanism, task: Task, base_rest: Array, targets: Array, branch: str
+) -> tuple[Array, NDArray[np.bool_]]:
+    """Arm joints for many targets, shape (T, k), and whether each is reached, shape (T,).
+
+    In closed form for two parallel joints; other arms by Newton steps from `FEW_STARTS` starts, the first to arrive.
+    """
+    planar = two_joint_arm(mechanism, task, base_rest)
+    if planar is not None:
+        first, second, cosine = solve_two_joint_arm(planar, targets[:, 0], targets[:, 1], branch)
+        return np.column_stack([first, second]), np.abs(cosine) <= 1.0
+    joints = np.zeros((len(targets), mechanism.N - len(base_rest)))
+    reached = np.zeros(len(targets), dtype=bool)
+    for start in _starts(mechanism, len(base_rest), branch, None)[1 : FEW_STARTS + 1]:
+        open_cells = np.flatnonzero(~reached)
+        starts = np.tile(start, (len(open_cells), 1))
+        found, errors = newton(mechanism, task, base_rest, starts, targets[open_cells])
+        good = (errors <= TOLERANCE * reach(mechanism)) & _on_branch(mechanism, len(base_rest), found, branch)
+        joints[open_cells[good]], reached[open_cells[good]] = found[good], True
+    return joints, reached
+
+
+def _on_branch(mechanism: Mechanism, m: int, joints: Array, branch: str) -> NDArray[np.bool_]:
+    """Whether the elbow, a revolute second arm joint, is bent to the asked side; True where there is none."""
+    if joints.shape[1] < 2 or mechanism.joint_types[m + 1] != "revolute":
+        return np.ones(len(joints), dtype=bool)
+    return np.array((np.sin(joints[:, 1]) >= 0.0) == (branch == "+"))
+
+
 def newton(mechanism: Mechanism, task: Task, base_rest: Array, starts: Array, target: Array) -> tuple[Array, Array]:
-    """Improve every row of `starts`, shape (S, n); returns the joints and the norms of the remaining tip errors."""
+    """Improve every row of `starts`, shape (S, n), towards one target or a target each; joints and remaining errors."""
     m = len(base_rest)
     revolute = np.array([kind == "revolute" for kind in mechanism.joint_types[m:]])
     joints = starts.copy()
@@ -78,7 +107,7 @@ def _starts(mechanism: Mechanism, m: int, branch: str, near: Array | None) -> Ar
     """Low-discrepancy starts over the arm's joints, the elbow on the asked side; the first is `near`."""
     n = mechanism.N - m
     unit = qmc.Halton(n, scramble=False).random(STARTS)
-    span = np.array([np.pi if kind == "revolute" else _reach(mechanism) for kind in mechanism.joint_types[m:]])
+    span = np.array([np.pi if kind == "revolute" else reach(mechanism) for kind in mechanism.joint_types[m:]])
     starts = (2.0 * unit - 1.0) * span
     if n > 1:
         starts[:, 1] = np.abs(starts[:, 1]) * (1.0 if branch == "+" else -1.0)
@@ -87,7 +116,7 @@ def _starts(mechanism: Mechanism, m: int, branch: str, near: Array | None) -> Ar
     return np.asarray(starts)
 
 
-def _reach(mechanism: Mechanism) -> float:
+def reach(mechanism: Mechanism) -> float:
     """Sum of all link offsets: no tip is farther out while prismatic joints stand at zero."""
     offsets = np.linalg.norm(mechanism.placement_position, axis=1).sum()
     return float(offsets + np.linalg.norm(mechanism.tool_position)) or 1.0

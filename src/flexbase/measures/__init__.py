@@ -1,1 +1,15 @@
-"""Measures of a configuration, one file each."""
+"""Measures of a configuration, one file each; importing them fills the registry."""
+
+from flexbase.measures import alignment, compensability, frequency, manipulability, robustness
+from flexbase.measures.registry import MEASURES, Configuration, Measure
+
+__all__ = [
+    "MEASURES",
+    "Configuration",
+    "Measure",
+    "alignment",
+    "compensability",
+    "frequency",
+    "manipulability",
+    "robustness",
+]

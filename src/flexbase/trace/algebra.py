@@ -185,3 +185,22 @@ def unstack(array: Any, depth: int) -> Any:
 def or_one(length: Scalar) -> Scalar:
     """A length that may be divided by: itself, or one where it is zero."""
     return length + (length == 0.0)
+
+
+def solve(A: Matrix, b: Vector) -> Vector:
+    """x with A x = b for a regular square A, by Gram-Schmidt: stable without a choice of pivots."""
+    columns, size = [list(column) for column in transpose(A)], len(b)
+    rest, triangle, sides = list(b), [[0.0] * size for _ in range(size)], [0.0] * size
+    for j in range(size):
+        triangle[j][j] = length = norm(columns[j])
+        unit = [x / length for x in columns[j]]
+        for later in range(j + 1, size):
+            triangle[j][later] = overlap = dot(unit, columns[later])
+            columns[later] = [sub(x, mul(overlap, u)) for x, u in zip(columns[later], unit, strict=True)]
+        sides[j] = dot(unit, rest)
+        rest = [sub(x, mul(sides[j], u)) for x, u in zip(rest, unit, strict=True)]
+    x: list[Scalar] = [0.0] * size
+    for i in reversed(range(size)):
+        known = dot(triangle[i][i + 1 :], x[i + 1 :])
+        x[i] = sub(sides[i], known) / triangle[i][i]
+    return tuple(x)
