@@ -71,7 +71,7 @@ class Chart:
         first, second = self.axes
         coordinates = {axis.name: (axis.name, axis.values, {"units": axis.unit}) for axis in (second, first)}
         plane = (second.name, first.name)
-        data = {
+        data: dict[str, Any] = {
             name: ((*plane, "mode") if values.ndim == 3 else plane, values, {"units": MEASURES[name].unit})
             for name, values in self.values.items()
         }
@@ -82,7 +82,7 @@ class Chart:
     def save_csv(self, path: str | Path) -> None:
         """One line a cell. Raises InputError where the place cannot be written."""
         first, second = self.axes
-        columns = {first.name: np.broadcast_to(first.values, self.status.shape)}
+        columns: dict[str, np.ndarray] = {first.name: np.broadcast_to(first.values, self.status.shape)}
         columns[second.name] = np.broadcast_to(second.values[:, None], self.status.shape)
         for name, values in self.values.items():
             if values.ndim == 3:
@@ -111,5 +111,7 @@ class Chart:
         return "\n".join(lines)
 
 
-def _with_none(values: Array) -> list[Any]:
-    return np.where(np.isfinite(values), values.astype(object), None).tolist()  # type: ignore[no-any-return]
+def _with_none(values: Array) -> Any:
+    if values.ndim:
+        return [_with_none(part) for part in values]
+    return float(values) if np.isfinite(values) else None

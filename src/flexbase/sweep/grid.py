@@ -39,7 +39,7 @@ def tip_grid(
         raise InputError(f"map over tip: {plant.name} has one task row, two are needed. Map over joints instead.")
     window = _window(plant) if bounds is None else _checked_bounds(bounds)
     held = check_length("hold", hold, task.k - 2, f"one for each task row after the second: {task.rows[2:]}")
-    axes = tuple(Axis(task.rows[i], task.units[i], np.linspace(*window[2 * i : 2 * i + 2], shape[i])) for i in range(2))
+    axes = tuple(Axis(task.rows[i], task.units[i], _ticks(window, i, shape)) for i in range(2))
     x, y = np.meshgrid(axes[0].values, axes[1].values)
     targets = np.column_stack([x.ravel(), y.ravel(), *(np.full(x.size, value) for value in held)])
     side = check_branch(branch or task.branch)
@@ -64,15 +64,17 @@ def joint_grid(
     window = [-np.pi, np.pi, -np.pi, np.pi] if bounds is None else _checked_bounds(bounds)
     places = [names.index(name) for name in chosen]
     kinds = [arm.mechanism.joint_types[arm.m + place] for place in places]
-    axes = tuple(
-        Axis(chosen[i], "rad" if kinds[i] == "revolute" else "m", np.linspace(*window[2 * i : 2 * i + 2], shape[i]))
-        for i in range(2)
-    )
+    units = ["rad" if kind == "revolute" else "m" for kind in kinds]
+    axes = tuple(Axis(chosen[i], units[i], _ticks(window, i, shape)) for i in range(2))
     x, y = np.meshgrid(axes[0].values, axes[1].values)
     still = check_length("hold", hold, arm.n, "one for each arm joint") if len(hold) else np.zeros(arm.n)
     cells = np.tile(still, (x.size, 1))
     cells[:, places[0]], cells[:, places[1]] = x.ravel(), y.ravel()
     return Grid((axes[0], axes[1]), cells, np.ones(x.size, dtype=bool))
+
+
+def _ticks(window: Sequence[float], axis: int, shape: tuple[int, int]) -> Array:
+    return np.linspace(window[2 * axis], window[2 * axis + 1], shape[axis])
 
 
 def _checked_bounds(bounds: Sequence[float]) -> list[float]:
