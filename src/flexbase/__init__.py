@@ -1,5 +1,7 @@
 """flexbase: where may a manipulator on a flexible base be driven hard, and what makes it safe elsewhere."""
 
+from typing import Any
+
 from flexbase.control.compensator import Certificate, Compensator, load_compensator
 from flexbase.design import METHODS, design
 from flexbase.errors import (
@@ -52,6 +54,16 @@ __all__ = [
     "load_compensator",
     "manipulability",
     "modes",
+    "plot",
     "simulate",
     "sweep",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """`fb.plot` on first use: drawing imports matplotlib, which takes most of a second."""
+    if name == "plot":
+        from flexbase.report.plot import plot
+
+        return plot
+    raise AttributeError(f"module 'flexbase' has no attribute {name!r}")

@@ -20,6 +20,8 @@ from flexbase.linear.modal import modes
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
 
+MISSED = 1e-3  # relative miss of the targets that deserves a word
+
 
 def certify(
     pose: Pose,
@@ -39,7 +41,7 @@ def certify(
     gains = gains if gains is not None else pose.arm.gains
     before, after = modes(pose).modes, modes(pose, Gain(E)).modes
     rho, mu = algebraic_loop_radius(pose, E), algebraic_loop_radius_per_joint(pose, E)
-    cautions = _cautions(rho, mu)
+    cautions = (*_cautions_of_targets(target_residual), *_cautions_of_loop(rho, mu), *_cautions_of_arm(pose))
     for caution in cautions:
         warnings.warn(caution, FlexbaseWarning, stacklevel=4)
     certificate = Certificate(
@@ -58,7 +60,15 @@ def certify(
     return Compensator(method, pose.plant.name, E, pose.q, certificate, history or {})
 
 
-def _cautions(rho: float, mu: float) -> tuple[str, ...]:
+def _cautions_of_targets(residual: float) -> tuple[str, ...]:
+    if residual <= MISSED:
+        return ()
+    return (
+        f"the design misses its targets by {100.0 * residual:.2g} %: see robustness_after and frequency_after_rad_s.",
+    )
+
+
+def _cautions_of_loop(rho: float, mu: float) -> tuple[str, ...]:
     if rho >= 1.0:
         return (
             f"algebraic-loop radius {rho:.3f} is 1 or more: any delay in the measured acceleration, however small, "
@@ -70,3 +80,15 @@ def _cautions(rho: float, mu: float) -> tuple[str, ...]:
             f"(radius {rho:.3f}).",
         )
     return ()
+
+
+def _cautions_of_arm(pose: Pose) -> tuple[str, ...]:
+    arm, cautions = pose.arm, []
+    if arm.has_gravity:
+        cautions.append("gravity stiffness is left out of the design equations; the certificate includes it.")
+    if arm.n > arm.k:
+        cautions.append(
+            f"redundant arm: {arm.n - arm.k} null-space motion{'s' * (arm.n - arm.k > 1)} without control, "
+            "poles at 0 in the closed loop."
+        )
+    return tuple(cautions)

@@ -58,7 +58,7 @@ def exact(
 ) -> Compensator:
     """Gain that aligns the one base mode, w = 0, at a chosen natural frequency.  [theory §7]
 
-    Assumes one base joint, as many task rows as arm joints, no gravity.
+    Assumes one base joint, as many task rows as arm joints; leaves gravity stiffness out of the equations.
 
     natural_frequency : wanted omega_1 [rad/s]; if left out, a quarter above the present one, or just above the lowest
         reachable one where that is higher
@@ -83,12 +83,12 @@ def exact(
 
 def _check_scope(pose: Pose) -> None:
     arm = pose.arm
-    if arm.m != 1:
+    if arm.m == 0:
+        raise InputError("exact: the base is rigid, so there is no mode to shape.")
+    if arm.m > 1:
         raise InputError(f"exact: {arm.m} base joints, but this method shapes one. Give --method task-priority.")
     if arm.k != arm.n:
         raise InputError(f"exact: {arm.k} task rows for {arm.n} arm joints; as many rows as joints are needed.")
-    if arm.has_gravity:
-        raise InputError("exact: gravity stiffness lies outside the reduced form. Design with gravity = [0, 0, 0].")
 
 
 def _default_frequency(pose: Pose, facts: Compensability) -> float:

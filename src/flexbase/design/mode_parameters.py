@@ -14,9 +14,10 @@ from flexbase.plant import Pose
 
 
 class ModeParameters(NamedTuple):
-    """phi_i = [w_i, omega_i] for each mode, shape (m, 2), and what they were computed from."""
+    """phi_i = [w_i, omega_i] for each mode, shape (m, 2), |R_i|, shape (m,), and what they were computed from."""
 
     values: Array
+    residue_sizes: Array
     reduced: ReducedArrays
     poles: list[Pole]
 
@@ -34,11 +35,9 @@ def mode_parameters(pose: Pose, E: Array) -> ModeParameters:
     poles = damped_poles(reduced.S, arm.base.damping, arm.base.stiffness)
     if len(poles) != arm.m or any(pole.value.imag == 0.0 for pole in poles):
         raise Infeasible("the base became overdamped: its modes no longer have a natural frequency.")
-    values = []
-    for pole in poles:
-        R = _residue(reduced, pole)
-        values.append([np.linalg.eigvalsh(R + R.T)[0], abs(pole.value)])
-    return ModeParameters(np.array(values), reduced, poles)
+    residues = [_residue(reduced, pole) for pole in poles]
+    values = [[np.linalg.eigvalsh(R + R.T)[0], abs(pole.value)] for R, pole in zip(residues, poles, strict=True)]
+    return ModeParameters(np.array(values), np.linalg.norm(residues, axis=(1, 2)), reduced, poles)
 
 
 def upper_triangle(E: Array) -> Array:

@@ -18,15 +18,17 @@ from flexbase.design.mode_parameters import (
 )
 from flexbase.errors import Infeasible, InputError
 from flexbase.linear.linearise import modified_inertia
-from flexbase.linear.modal import modes
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
 
 STEP = 0.02  # g1 of the paper's example
 ITERATIONS = 800
 RAISE = 1.25  # default target over the present frequency; the paper's example raises it by 1.2515
+RAISE_SEVERAL = 1.05  # the same for several modes, which share one E
 TRIAL = 1e-5  # size of the small variations from which H is estimated, relative to the arm's inertia
-NEGLIGIBLE = 1e-9  # singular values of a scaled H below this are taken as zero
+NEGLIGIBLE = 1e-9  # singular values of the first mode's scaled H below this are taken as zero
+LEFT_OVER = 0.1  # the same for later modes: directions that earlier modes leave nearly no freedom in are given up
+HALVINGS = 30  # of a step that would leave M - E > 0
 
 
 def shape_recursively(
@@ -47,7 +49,7 @@ def shape_recursively(
     _check_options(pose, method, step, iterations, derivatives)
     now = mode_parameters(pose, np.zeros((pose.arm.n, pose.arm.n)))
     targets = np.zeros_like(now.values)
-    targets[:, 1] = RAISE * now.values[:, 1]
+    targets[:, 1] = (RAISE if pose.arm.m == 1 else RAISE_SEVERAL) * now.values[:, 1]
     if natural_frequencies is not None:
         targets[:, 1] = check_length("natural frequency", natural_frequencies, pose.arm.m, "one for each mode")
     rng = np.random.default_rng(seed)
@@ -57,28 +59,22 @@ def shape_recursively(
     for iteration in range(iterations):
         try:
             H = parameter_slopes(pose, E, now) if derivatives == "exact" else _estimate(pose, E, now, H, rng)
-            E = symmetric(upper_triangle(E) + _priority_step(H, step * (targets - now.values)), n)
-            now = mode_parameters(pose, E)
+            E, now = _advance(pose, E, _priority_step(H, step * (targets - now.values)))
         except Infeasible as fault:
             raise Infeasible(
                 f"{method}: after {iteration} of {iterations} iterations {fault} Ask for lower natural frequencies, "
                 "a smaller step or another pose."
             ) from fault
         track.append(_record(pose, E, now))
-    scale = np.column_stack([np.abs(modes_robustness(pose)), targets[:, 1]])
+    scale = np.column_stack([2.0 * now.residue_sizes, targets[:, 1]])  # w/(2|R|): the relative shortage of theory §4
     residual = float(np.abs((now.values - targets) / np.where(scale > 0.0, scale, 1.0)).max())
     history = dict(zip(("robustness", "frequency_rad_s", "min_eig_modified_inertia"), np.array(track).T, strict=True))
     return certify(pose, method, E, target_residual=residual, gains=gains, history=history)
 
 
-def modes_robustness(pose: Pose) -> Array:
-    """w_i without a compensator, shape (m,)."""
-    return np.array([mode.robustness for mode in modes(pose).modes])
-
-
 def _check_options(pose: Pose, method: str, step: float, iterations: int, derivatives: str) -> None:
-    if pose.arm.has_gravity:
-        raise InputError(f"{method}: gravity stiffness lies outside the reduced form. Design with gravity = [0, 0, 0].")
+    if pose.arm.m == 0:
+        raise InputError(f"{method}: the base is rigid, so there is no mode to shape.")
     if not 0.0 < step <= 1.0:
         raise InputError(f"step: {step:g} must be above 0 and at most 1. The paper uses {STEP:g}.")
     if iterations < 1:
@@ -101,13 +97,24 @@ def _priority_step(H: Array, wanted: Array) -> Array:
     """Change of rho that meets each mode's wanted change in the freedom that earlier modes leave.  [U03 eq 14, Y01]"""
     size = H.shape[-1]
     change, free = np.zeros(size), np.eye(size)
-    for slopes, aim in zip(H, wanted, strict=True):
+    for level, (slopes, aim) in enumerate(zip(H, wanted, strict=True)):
         lengths = np.linalg.norm(slopes, axis=1, keepdims=True)
         rows = 1.0 / np.where(lengths > 0.0, lengths, 1.0)
-        inverse = np.linalg.pinv(rows * slopes @ free, rcond=NEGLIGIBLE)
+        inverse = np.linalg.pinv(rows * slopes @ free, rcond=LEFT_OVER if level else NEGLIGIBLE)
         change = change + inverse @ (rows[:, 0] * (aim - slopes @ change))
         free = free - inverse @ (rows * slopes @ free)
     return np.asarray(change)
+
+
+def _advance(pose: Pose, E: Array, change: Array) -> tuple[Array, ModeParameters]:
+    """The next E and its parameters; a step that would leave M - E > 0 is halved. Raises Infeasible if none is left."""
+    for halving in range(HALVINGS):
+        trial = symmetric(upper_triangle(E) + 0.5**halving * change, len(E))
+        try:
+            return trial, mode_parameters(pose, trial)
+        except Infeasible as fault:
+            refusal = fault
+    raise refusal
 
 
 def _record(pose: Pose, E: Array, now: ModeParameters) -> tuple[float, float, float]:

@@ -23,13 +23,13 @@ def recursive(
 ) -> Compensator:
     """Step phi = [w_1, omega_1] towards [0, natural_frequency] from E = 0.  [U03 eq 12-16]
 
-    Assumes one base joint, an underdamped base, no gravity.
+    Assumes one base joint, an underdamped base; leaves gravity stiffness out of the equations.
 
     natural_frequency : wanted omega_1 [rad/s]; a quarter above the present one if left out
     step : g1; derivatives : "estimated" (eq 16, from random variations drawn with `seed`) or "exact"
     Raises Infeasible if M - E stops being positive definite on the way.
     """
-    if pose.arm.m != 1:
+    if pose.arm.m > 1:
         raise InputError(
             f"recursive: {pose.arm.m} base joints, but this method shapes one. Give --method task-priority."
         )

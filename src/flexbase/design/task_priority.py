@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from flexbase.control.compensator import Compensator
 from flexbase.design.recursion import ITERATIONS, STEP, shape_recursively
 from flexbase.design.registry import method
-from flexbase.errors import InputError
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
 
@@ -25,15 +24,14 @@ def task_priority(
 ) -> Compensator:
     """Step every [w_i, omega_i] towards [0, target i] from E = 0, earlier modes taking priority.  [Y01, U03 §III B]
 
-    Assumes an underdamped base with distinct frequencies, no gravity. With m modes and n (n + 1)/2 entries of E the
-    later targets may stay unmet; the certificate's `target_residual` says how far.
+    Assumes an underdamped base with distinct frequencies; leaves gravity stiffness out of the equations. With m modes
+    and n (n + 1)/2 entries of E the later targets may stay unmet; the certificate's `target_residual` says how far.
 
-    natural_frequency : wanted omega_i [rad/s], slowest first; a quarter above the present ones if left out
+    natural_frequency : wanted omega_i [rad/s], slowest first; if left out, a twentieth above the present ones
+        (a quarter for one base joint)
     step, iterations, derivatives, seed : as for `recursive`
     Raises Infeasible if M - E stops being positive definite on the way.
     """
-    if pose.arm.m < 1:
-        raise InputError("task-priority: the base is rigid, so there is no mode to shape.")
     targets = [natural_frequency] if isinstance(natural_frequency, int | float) else natural_frequency
     return shape_recursively(
         pose,

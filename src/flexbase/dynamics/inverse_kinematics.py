@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import qmc
 
 from flexbase.checks import Array
 from flexbase.dynamics.kinematics import forward, task_jacobian
@@ -105,6 +104,8 @@ def _error_and_jacobian(
 
 def _starts(mechanism: Mechanism, m: int, branch: str, near: Array | None) -> Array:
     """Low-discrepancy starts over the arm's joints, the elbow on the asked side; the first is `near`."""
+    from scipy.stats import qmc  # half a second to import, and only arms without a closed form need it
+
     n = mechanism.N - m
     unit = qmc.Halton(n, scramble=False).random(STARTS)
     span = np.array([np.pi if kind == "revolute" else reach(mechanism) for kind in mechanism.joint_types[m:]])

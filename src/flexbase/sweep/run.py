@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from flexbase.checks import choose
-from flexbase.errors import InputError
+from flexbase.errors import FlexbaseWarning, InputError
 from flexbase.linear.linearise import HasGain
 from flexbase.measures import MEASURES
 from flexbase.plant import Plant
@@ -47,7 +48,9 @@ def sweep(
         raise InputError(f"shape: {list(shape)} is not two counts from 2 up with at most {LARGEST} cells.")
     arm = plant.arm
     if arm.has_gravity:
-        raise InputError(f"map: {plant.name} has gravity, which maps do not know yet. Map it with gravity = [0, 0, 0].")
+        warnings.warn(
+            f"map: {plant.name} has gravity; its sag and stiffness are left out.", FlexbaseWarning, stacklevel=2
+        )
     if any(one.name == "compensability" for one in chosen) and (arm.m != 1 or arm.k != arm.n):
         raise InputError(
             f"measure compensability: one base joint and as many task rows as arm joints are needed, "

@@ -1,0 +1,111 @@
+"""Fig. 6 and 8: w_1 over all that the tip can reach, and where it touches zero."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexbase.checks import Array
+from flexbase.dynamics.inertia import mass_matrix
+from flexbase.dynamics.inverse_kinematics import arm_angles_of_many
+from flexbase.dynamics.kinematics import forward
+from flexbase.dynamics.two_joint_arm import two_joint_arm
+from flexbase.errors import InputError
+from flexbase.linear.linearise import HasGain
+from flexbase.linear.reduced import RealMode
+from flexbase.measures import MEASURES, Measure
+from flexbase.plant import Plant
+from flexbase.sweep.evaluate import evaluate
+from flexbase.trace.algebra import Scalar, dot, stack, unstack
+
+RINGS, SPOKES = 126, 361
+RIM = 1e-6  # of the reach, kept clear of its edges, where the arm is singular
+BLOCK = 16384
+
+
+def turn(mode: RealMode) -> Scalar:
+    """Signed angle from the input shape b to the output shape a, in (-pi, pi] [rad]; two task rows.
+
+    w = |a||b| (cos(turn) - 1) touches zero without changing its sign; this angle passes through zero there, so that
+    the robust arm configurations are its sign changes near 0 (those near pi are the opposite case).
+    """
+    (ax, ay), (bx, by) = mode.a, mode.b
+    return np.arctan2(bx * ay - by * ax, dot(mode.a, mode.b))
+
+
+TURN = Measure("turn", "rad", "signed angle from b to a", True, "the robust arm configuration", turn)
+
+
+@dataclass(frozen=True, eq=False)
+class RobustnessMap:
+    """w_1 on rings about the shoulder, between the two circles where the arm is singular.
+
+    x, y : tip positions, shape (rings, spokes) [m]; the last spoke closes the circle
+    robustness : w_1 [m/(N s^2)], NaN unless the status is OK; turn : angle from b to a [rad]
+    smallest_inertia : smallest eigenvalue of M - E; below zero the arm under this E has no meaning
+    status : a key of `flexbase.sweep.chart.STATUS`
+    shoulder, inner, outer : centre [m] and radii [m] of the reachable ring
+    """
+
+    x: Array
+    y: Array
+    robustness: Array
+    turn: Array
+    smallest_inertia: Array
+    status: NDArray[np.int8]
+    shoulder: tuple[float, float]
+    inner: float
+    outer: float
+    compensated: bool
+
+    @property
+    def indefinite(self) -> bool:
+        """Whether M - E loses definiteness somewhere."""
+        return bool((self.smallest_inertia <= 0.0).any())
+
+
+def robustness_map(
+    plant: Plant, compensator: HasGain | None = None, shape: tuple[int, int] = (RINGS, SPOKES)
+) -> RobustnessMap:
+    """w_1 over the workspace of a planar arm with two joints on a one-joint base, default branch, base at rest.
+
+    Raises InputError for other arms.
+    """
+    arm = plant.arm
+    planar = two_joint_arm(arm.mechanism, arm.task, arm.base.equilibrium)
+    if planar is None or arm.m != 1:
+        raise InputError(f"{plant.name}: this map needs two parallel arm joints in the task's plane and one base joint.")
+    inner, outer = abs(planar.upper - planar.fore), planar.upper + planar.fore
+    radii = np.linspace(inner + RIM * outer, outer - RIM * outer, shape[0])[:, None]
+    angles = np.linspace(-np.pi, np.pi, shape[1])[None, :]
+    x, y = planar.shoulder[0] + radii * np.cos(angles), planar.shoulder[1] + radii * np.sin(angles)
+    targets = np.column_stack([x.ravel(), y.ravel()])
+    joints, _ = arm_angles_of_many(arm.mechanism, arm.task, arm.base.equilibrium, targets, arm.task.branch)
+    E = None if compensator is None else np.asarray(compensator.E)
+    blocks = [
+        evaluate(arm, joints[begin : begin + BLOCK], [MEASURES["robustness"], TURN], E)
+        for begin in range(0, len(joints), BLOCK)
+    ]
+    frames = forward(arm.mechanism, (*arm.base.equilibrium.tolist(), *unstack(joints, 1)))
+    inertia = stack(mass_matrix(frames))
+    if E is not None:
+        inertia[..., arm.m :, arm.m :] -= E
+    status = np.concatenate([block.status for block in blocks])
+    return RobustnessMap(
+        x,
+        y,
+        _folded([block.values["robustness"] for block in blocks], x.shape),
+        _folded([block.values["turn"] for block in blocks], x.shape),
+        np.linalg.eigvalsh(inertia)[:, 0].reshape(x.shape),
+        status.reshape(x.shape),
+        (float(planar.shoulder[0]), float(planar.shoulder[1])),
+        inner,
+        outer,
+        E is not None,
+    )
+
+
+def _folded(parts: list[Array], shape: tuple[int, ...]) -> Array:
+    return np.concatenate(parts)[:, 0].reshape(shape)
