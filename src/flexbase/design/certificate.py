@@ -16,7 +16,7 @@ from flexbase.linear.margins import (
     closed_loop_abscissa,
     lag_margin,
 )
-from flexbase.linear.modal import modes
+from flexbase.linear.modal import has_arm_stiffness, modes
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
 
@@ -84,7 +84,7 @@ def _cautions_of_loop(rho: float, mu: float) -> tuple[str, ...]:
 
 def _cautions_of_arm(pose: Pose) -> tuple[str, ...]:
     arm, cautions = pose.arm, []
-    if arm.has_gravity:
+    if has_arm_stiffness(pose):
         cautions.append("gravity stiffness is left out of the design equations; the certificate includes it.")
     if arm.n > arm.k:
         cautions.append(

@@ -23,6 +23,7 @@ from flexbase.linear.reduced import RealMode, alignment, robustness
 from flexbase.plant import Pose
 
 POSITIVE_REAL = 1e-8  # relative passivity shortage (1 - cos)/2 up to which a residue counts as positive  [theory §5]
+NEGLIGIBLE = 1e-12  # stiffness of the arm, relative, below which it counts as none
 ONE_JOINT = "One base joint: exact, at any damping."
 UNDAMPED = "Undamped base: exact in the limit of vanishing damping."
 PROPORTIONAL = "Proportional damping: positive residues are sufficient, not necessary."
@@ -117,13 +118,14 @@ class Modes:
 def modes(pose: Pose, compensator: HasGain | None = None) -> Modes:
     """Vibration modes of a pose, with or without a compensator.
 
-    Assumes distinct poles. Without gravity the reduced form of theory §3 is used, which is exact; with gravity the full
-    2N state space, and the modes returned are the m in which the base stores most strain energy.
+    Assumes distinct poles. Where stiffness acts on the base alone, the reduced form of theory §3 is exact and is used;
+    where gravity stiffens the arm too, the full 2N state space, and the modes are the m in which the base stores most
+    strain energy.
     Warns where a mode is overdamped. Raises InputError if M - E is not positive definite.
     """
     E = gain_of(pose, compensator)
     check_definite_inertia(pose, E)
-    analyse = _with_gravity if pose.arm.has_gravity else _reduced
+    analyse = _with_arm_stiffness if has_arm_stiffness(pose) else _reduced
     found, rigid_mode, caveat = analyse(pose, E, compensator)
     overdamped = [mode.label for mode in found if mode.damping_ratio >= 1.0]
     if overdamped:
@@ -134,15 +136,21 @@ def modes(pose: Pose, compensator: HasGain | None = None) -> Modes:
     return Modes(pose, tuple(found), rigid_mode, verdict, caveat)
 
 
+def has_arm_stiffness(pose: Pose) -> bool:
+    """Whether gravity stiffens the arm's own motions, so that the reduced form is not exact."""
+    return bool(np.abs(pose.K[pose.arm.m :]).max() > NEGLIGIBLE * np.abs(pose.K).max(initial=0.0))
+
+
 def _reduced(pose: Pose, E: Array, _: HasGain | None) -> tuple[list[Mode], Array, str]:
-    reduced, base = reduced_arrays(pose, E), pose.arm.base
-    if base.m == 0:
+    reduced, m = reduced_arrays(pose, E), pose.arm.m
+    D, K = pose.D[:m, :m], pose.K[:m, :m]
+    if m == 0:
         return [], reduced.R0, RIGID
-    real = real_shapes(reduced.S, base.damping, base.stiffness)
+    real = real_shapes(reduced.S, D, K)
     if real is not None:
-        caveat = ONE_JOINT if base.m == 1 else PROPORTIONAL if base.damping.any() else UNDAMPED
-        return [_real_mode(pose, reduced, real, i) for i in range(base.m)], reduced.R0, caveat
-    poles = damped_poles(reduced.S, base.damping, base.stiffness)
+        caveat = ONE_JOINT if m == 1 else PROPORTIONAL if D.any() else UNDAMPED
+        return [_real_mode(pose, reduced, real, i) for i in range(m)], reduced.R0, caveat
+    poles = damped_poles(reduced.S, D, K)
     found = [
         _damped_mode(pose, pole, -reduced.U @ pole.shape, reduced.V @ pole.shape, _follow(reduced, pole.shape))
         for pole in poles
@@ -150,7 +158,7 @@ def _reduced(pose: Pose, E: Array, _: HasGain | None) -> tuple[list[Mode], Array
     return found, reduced.R0, INDICATOR
 
 
-def _with_gravity(pose: Pose, E: Array, compensator: HasGain | None) -> tuple[list[Mode], Array, str]:
+def _with_arm_stiffness(pose: Pose, E: Array, compensator: HasGain | None) -> tuple[list[Mode], Array, str]:
     """Full state space: damping and stiffness no longer act on the base alone."""
     system, m = linearise(pose, compensator), pose.arm.m
     if m == 0:

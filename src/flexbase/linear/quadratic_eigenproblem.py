@@ -10,6 +10,7 @@ import scipy.linalg
 from flexbase.checks import Array
 
 PROPORTIONAL = 1e-12  # off-diagonal modal damping, relative, below which a mode shape counts as real
+RIGID = 1e-6  # of the fastest pole: a double pole at 0 is computed as about 1e-8 of it, the root of rounding
 
 
 class RealShapes(NamedTuple):
@@ -51,7 +52,7 @@ def damped_poles(M: Array, D: Array, K: Array) -> list[Pole]:
     N = len(M)
     A = np.block([[np.zeros((N, N)), np.eye(N)], [-np.linalg.solve(M, np.hstack([K, D]))]])
     values, vectors = scipy.linalg.eig(A)
-    rigid = 1e-9 * np.abs(values).max()
+    rigid = RIGID * np.abs(values).max()
     poles = []
     for value, vector in zip(values, vectors.T, strict=True):
         if value.imag < 0.0 or abs(value) <= rigid:

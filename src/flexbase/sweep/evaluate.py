@@ -35,8 +35,11 @@ def evaluate(arm: MountedArm, joints: Array, measures: list[Measure], E: Array |
         M, J, reduced = _reduced(arm, joints[good], E)
         configuration = Configuration(M, J, arm.m, reduced, real_modes(reduced, arm.base))
         for one in measures:
-            found = [one.run(mode) for mode in configuration.modes] if one.per_mode else one.run(configuration)
-            values[one.name][good] = np.stack(np.broadcast_arrays(*found), axis=-1) if one.per_mode else found
+            if one.per_mode:
+                for i, mode in enumerate(configuration.modes):
+                    values[one.name][good, i] = one.run(mode)
+            else:
+                values[one.name][good] = one.run(configuration)
     return Block(values, status)
 
 
