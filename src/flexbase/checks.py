@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from numbers import Real
 from typing import TypeVar
 
 import numpy as np
@@ -26,11 +27,20 @@ def finite_array(name: str, value: ArrayLike) -> Array:
     return array
 
 
+def positive_number(name: str, value: object, unit: str) -> float:
+    """Return a finite number above 0. Raises InputError."""
+    if isinstance(value, bool) or not isinstance(value, Real) or not 0.0 < float(value) < np.inf:
+        raise InputError(f"{name}: {value!r} is not a positive number. Give one in {unit}.")
+    return float(value)
+
+
 def check_length(name: str, value: ArrayLike, length: int, meaning: str) -> Array:
     """Return a vector of `length` finite numbers. Raises InputError naming the count that was given."""
     array = np.atleast_1d(finite_array(name, value))
     if array.shape != (length,):
-        given = f"{array.size} values" if array.ndim == 1 else f"an array of shape {array.shape}"
+        given = (
+            f"{array.size} value{'s' * (array.size != 1)}" if array.ndim == 1 else f"an array of shape {array.shape}"
+        )
         raise InputError(f"{name}: {given} given, {length} needed: {meaning}.")
     return array
 

@@ -1,1 +1,1 @@
-"""The command line: one file a command, no science."""
+"""The command line: parse, call the library, show. One file a command, no science."""

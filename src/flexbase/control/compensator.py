@@ -120,5 +120,5 @@ def _shown(value: Any) -> str:
     if value is None:
         return "none"
     if isinstance(value, tuple):
-        return ", ".join(_shown(entry) for entry in value) or "none"
+        return "\n    ".join(value) if value and isinstance(value[0], str) else ", ".join(map(_shown, value)) or "none"
     return value if isinstance(value, str) else f"{value:.6g}"

@@ -9,15 +9,15 @@ import numpy as np
 from flexbase.checks import Array, check_symmetric, finite_array
 from flexbase.control.compensator import Certificate, Compensator
 from flexbase.errors import FlexbaseWarning
-from flexbase.linear.linearise import Gain, modified_inertia
+from flexbase.linear.linearise import Gain, has_arm_stiffness, modified_inertia
 from flexbase.linear.margins import (
     algebraic_loop_radius,
     algebraic_loop_radius_per_joint,
     closed_loop_abscissa,
     lag_margin,
 )
-from flexbase.linear.modal import has_arm_stiffness, modes
-from flexbase.model.task import Gains
+from flexbase.linear.modal import modes
+from flexbase.model.task import Gains, checked_gains
 from flexbase.plant import Pose
 
 MISSED = 1e-3  # relative miss of the targets that deserves a word
@@ -38,7 +38,7 @@ def certify(
     Warns when the algebraic loop does not bear a common delay.
     """
     E = check_symmetric("E", finite_array("E", E), "")
-    gains = gains if gains is not None else pose.arm.gains
+    gains = pose.arm.gains if gains is None else checked_gains(gains, pose.arm.k)
     before, after = modes(pose).modes, modes(pose, Gain(E)).modes
     rho, mu = algebraic_loop_radius(pose, E), algebraic_loop_radius_per_joint(pose, E)
     cautions = (*_cautions_of_targets(target_residual), *_cautions_of_loop(rho, mu), *_cautions_of_arm(pose))
@@ -72,7 +72,7 @@ def _cautions_of_loop(rho: float, mu: float) -> tuple[str, ...]:
     if rho >= 1.0:
         return (
             f"algebraic-loop radius {rho:.3f} is 1 or more: any delay in the measured acceleration, however small, "
-            "destabilises this compensator. Ask for a lower frequency, or --objective least-radius.",
+            "destabilises this compensator. Method exact, objective least-radius, gives the smallest radius.",
         )
     if mu >= 1.0:
         return (
@@ -89,6 +89,6 @@ def _cautions_of_arm(pose: Pose) -> tuple[str, ...]:
     if arm.n > arm.k:
         cautions.append(
             f"redundant arm: {arm.n - arm.k} null-space motion{'s' * (arm.n - arm.k > 1)} without control, "
-            "poles at 0 in the closed loop."
+            "left out of the closed loop's figures."
         )
     return tuple(cautions)

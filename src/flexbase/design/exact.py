@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from flexbase.checks import Array
+from flexbase.checks import Array, positive_number
 from flexbase.control.compensator import Compensator
 from flexbase.design.certificate import certify
 from flexbase.design.registry import method
@@ -71,9 +71,12 @@ def exact(
     if not np.isfinite(facts.slowest):
         raise Infeasible(
             f"no gain aligns the mode here: y.z = {facts.product:.4g} kg m^2 lies neither above 0 nor between "
-            f"-{pose.M[0, 0]:.4g} and 0. Choose another pose: `flexbase map --measure compensability` shows where."
+            f"-{pose.M[0, 0]:.4g} and 0. Choose another pose: a map of the measure compensability shows where."
         )
-    frequency = _default_frequency(pose, facts) if natural_frequency is None else float(natural_frequency)
+    if natural_frequency is None:
+        frequency = _default_frequency(pose, facts)
+    else:
+        frequency = positive_number("natural frequency", natural_frequency, "rad/s")
     alpha = _alpha(pose, facts, frequency)
     E = (_least_gain if objective == "least-gain" else _least_radius)(pose, facts, alpha)
     residual = (pose.M[1:, 1:] - E) @ facts.z - facts.y / alpha
@@ -86,7 +89,7 @@ def _check_scope(pose: Pose) -> None:
     if arm.m == 0:
         raise InputError("exact: the base is rigid, so there is no mode to shape.")
     if arm.m > 1:
-        raise InputError(f"exact: {arm.m} base joints, but this method shapes one. Give --method task-priority.")
+        raise InputError(f"exact: {arm.m} base joints, but this method shapes one; task-priority shapes several.")
     if arm.k != arm.n:
         raise InputError(f"exact: {arm.k} task rows for {arm.n} arm joints; as many rows as joints are needed.")
 
@@ -97,8 +100,6 @@ def _default_frequency(pose: Pose, facts: Compensability) -> float:
 
 def _alpha(pose: Pose, facts: Compensability, frequency: float) -> float:
     """alpha = (Mpp - Kp/omega^2) / (y.z): X z = y/alpha then meets both targets.  [theory §7]"""
-    if not (np.isfinite(frequency) and frequency > 0.0):
-        raise InputError(f"natural frequency: {frequency:g} rad/s is not a positive number.")
     if frequency <= facts.slowest:
         raise Infeasible(
             f"natural frequency {frequency:g} rad/s is out of reach: with w = 0 only frequencies above "

@@ -47,7 +47,7 @@ def shape_recursively(
     Raises Infeasible, with the iteration, if M - E stops being positive definite.
     """
     _check_options(pose, method, step, iterations, derivatives)
-    now = mode_parameters(pose, np.zeros((pose.arm.n, pose.arm.n)))
+    now = first = mode_parameters(pose, np.zeros((pose.arm.n, pose.arm.n)))
     targets = np.zeros_like(now.values)
     targets[:, 1] = (RAISE if pose.arm.m == 1 else RAISE_SEVERAL) * now.values[:, 1]
     if natural_frequencies is not None:
@@ -66,7 +66,7 @@ def shape_recursively(
                 "a smaller step or another pose."
             ) from fault
         track.append(_record(pose, E, now))
-    scale = np.column_stack([2.0 * now.residue_sizes, targets[:, 1]])  # w/(2|R|): the relative shortage of theory §4
+    scale = np.column_stack([2.0 * first.residue_sizes, targets[:, 1]])  # w/(2|R|) is theory §4's relative shortage
     residual = float(np.abs((now.values - targets) / np.where(scale > 0.0, scale, 1.0)).max())
     history = dict(zip(("robustness", "frequency_rad_s", "min_eig_modified_inertia"), np.array(track).T, strict=True))
     return certify(pose, method, E, target_residual=residual, gains=gains, history=history)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from flexbase.checks import positive_number
 from flexbase.control.compensator import Compensator
 from flexbase.design.recursion import ITERATIONS, STEP, shape_recursively
 from flexbase.design.registry import method
@@ -31,9 +32,11 @@ def recursive(
     """
     if pose.arm.m > 1:
         raise InputError(
-            f"recursive: {pose.arm.m} base joints, but this method shapes one. Give --method task-priority."
+            f"recursive: {pose.arm.m} base joints, but this method shapes one; task-priority shapes several."
         )
-    targets = None if natural_frequency is None else [natural_frequency]
+    targets = None
+    if natural_frequency is not None:
+        targets = [positive_number("natural frequency", natural_frequency, "rad/s")]
     return shape_recursively(
         pose,
         "recursive",

@@ -17,6 +17,7 @@ STARTS = 128
 FEW_STARTS = 8
 STEPS = 80
 LARGEST_STEP = 0.5  # rad or m, a Newton step
+STRETCHED = 1.0 + 1e-12  # cosine of the elbow, to rounding, at the edge of reach
 TOLERANCE = 1e-11  # of the arm's reach: rounding in the kinematics is some 1e-15 of it
 
 
@@ -31,7 +32,7 @@ def arm_angles(
     planar = two_joint_arm(mechanism, task, base_rest)
     if planar is not None:
         first, second, cosine = solve_two_joint_arm(planar, target[0], target[1], branch)
-        reached = abs(float(cosine)) <= 1.0
+        reached = abs(float(cosine)) <= STRETCHED
         distance = float(np.hypot(*(target - planar.shoulder)))
         shortfall = max(distance - planar.upper - planar.fore, abs(planar.upper - planar.fore) - distance, 0.0)
         return (np.array([first, second]), 0.0) if reached else (None, shortfall)
@@ -54,7 +55,7 @@ def arm_angles_of_many(
     planar = two_joint_arm(mechanism, task, base_rest)
     if planar is not None:
         first, second, cosine = solve_two_joint_arm(planar, targets[:, 0], targets[:, 1], branch)
-        return np.column_stack([first, second]), np.abs(cosine) <= 1.0
+        return np.column_stack([first, second]), np.abs(cosine) <= STRETCHED
     joints = np.zeros((len(targets), mechanism.N - len(base_rest)))
     reached = np.zeros(len(targets), dtype=bool)
     for start in _starts(mechanism, len(base_rest), branch, None)[1 : FEW_STARTS + 1]:

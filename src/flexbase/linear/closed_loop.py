@@ -20,12 +20,15 @@ def close_loop(system: SecondOrder, gains: Gains) -> SecondOrder:
     )
 
 
-def abscissa(system: SecondOrder) -> float:
-    """Real part of the rightmost pole [1/s]; negative when the system settles."""
-    return float(np.linalg.eigvals(system.state_space().A).real.max())
+def abscissa(system: SecondOrder, drifting: int = 0) -> float:
+    """Real part of the rightmost pole [1/s]; negative when the system settles.
+
+    drifting : motions that nothing controls; their two poles each, at 0, are left out
+    """
+    return _rightmost(system.state_space().A, 2 * drifting)
 
 
-def lagged_abscissa(system: SecondOrder, lagged: Array, lag: float) -> float:
+def lagged_abscissa(system: SecondOrder, lagged: Array, lag: float, drifting: int = 0) -> float:
     """Rightmost pole of M q'' + D q' + K q = z, lag z' + z = L q'', for lag > 0 [s].
 
     lagged : L, shape (N, N): what a first-order lag delays. At lag = 0 the inertia would be M - L.
@@ -40,4 +43,10 @@ def lagged_abscissa(system: SecondOrder, lagged: Array, lag: float) -> float:
             (lagged @ acceleration - np.hstack([zero, zero, eye])) / lag,
         ]
     )
-    return float(np.linalg.eigvals(A).real.max())
+    return _rightmost(A, 2 * drifting)
+
+
+def _rightmost(A: Array, left_out: int) -> float:
+    """Largest real part of the eigenvalues, without the `left_out` ones nearest to 0."""
+    values = np.linalg.eigvals(A)
+    return float(values[np.argsort(np.abs(values))[left_out:]].real.max())

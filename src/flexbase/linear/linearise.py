@@ -12,6 +12,8 @@ from flexbase.linear.reduced import reduce_arm
 from flexbase.linear.second_order import SecondOrder
 from flexbase.plant import Pose
 
+NEGLIGIBLE = 1e-12  # stiffness of the arm, relative, below which it counts as none
+
 
 class HasGain(Protocol):
     """Anything with a mode shaping matrix: a `Compensator`."""
@@ -47,6 +49,11 @@ def gain_of(pose: Pose, compensator: HasGain | None) -> Array:
     if E.shape != (n, n):
         raise InputError(f"compensator: E has shape {E.shape}, but {pose.plant.name} has {n} arm joints.")
     return check_symmetric("compensator E", E, "")
+
+
+def has_arm_stiffness(pose: Pose) -> bool:
+    """Whether gravity stiffens the arm's own motions, so that the reduced form is not exact."""
+    return bool(np.abs(pose.K[pose.arm.m :]).max() > NEGLIGIBLE * np.abs(pose.K).max(initial=0.0))
 
 
 def modified_inertia(pose: Pose, E: Array) -> Array:

@@ -9,8 +9,7 @@ from scipy.optimize import brentq, minimize
 
 from flexbase.checks import Array
 from flexbase.linear.closed_loop import abscissa, close_loop, lagged_abscissa
-from flexbase.linear.linearise import linearise, modified_inertia
-from flexbase.linear.second_order import SecondOrder
+from flexbase.linear.linearise import has_arm_stiffness, linearise, modified_inertia
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
 
@@ -64,30 +63,34 @@ def _negative_radius(A: Array, free: Array) -> tuple[float, Array]:
 
 
 def closed_loop_abscissa(pose: Pose, E: Array, gains: Gains) -> float:
-    """Rightmost pole of the task-space PD loop with ideal acceleration feedback [1/s]."""
-    return abscissa(close_loop(_with_gain(pose, E), gains))
+    """Rightmost pole of the task-space PD loop with ideal acceleration feedback [1/s].
+
+    The null-space motions of a redundant arm, which the task does not control, are left out.
+    """
+    system = replace(linearise(pose), M=modified_inertia(pose, E))  # an indefinite M - E shows as an unstable loop
+    return abscissa(close_loop(system, gains), _drifting(pose))
 
 
 def lag_margin(pose: Pose, E: Array, gains: Gains) -> float | None:
     """Smallest first-order lag in the acceleration feedback that destabilises the PD loop [s].
 
-    0 if the loop is unstable without lag; None if no lag up to 1 s destabilises it.
+    0 if the loop is unstable without lag; None if no lag up to 1 s destabilises it. Null-space motions are left out.
     """
-    if not E.any():
-        return None if closed_loop_abscissa(pose, E, gains) < 0.0 else 0.0
     if closed_loop_abscissa(pose, E, gains) >= 0.0:
         return 0.0
-    loop, lagged = close_loop(linearise(pose), gains), pose.M - modified_inertia(pose, E)
+    if not E.any():
+        return None
+    loop, lagged, drifting = close_loop(linearise(pose), gains), pose.M - modified_inertia(pose, E), _drifting(pose)
     before = 0.0
     for lag in LAGS:
-        if lagged_abscissa(loop, lagged, lag) >= 0.0:
+        if lagged_abscissa(loop, lagged, lag, drifting) >= 0.0:
             if before == 0.0:
                 return 0.0
-            return float(brentq(lambda T: lagged_abscissa(loop, lagged, T), before, lag, rtol=1e-9))
+            return float(brentq(lambda T: lagged_abscissa(loop, lagged, T, drifting), before, lag, rtol=1e-9))
         before = lag
     return None
 
 
-def _with_gain(pose: Pose, E: Array) -> SecondOrder:
-    """The linear model under E, whether or not M - E is definite: an indefinite one shows as an unstable loop."""
-    return replace(linearise(pose), M=modified_inertia(pose, E))
+def _drifting(pose: Pose) -> int:
+    """Motions of a redundant arm that neither the task nor gravity holds."""
+    return 0 if has_arm_stiffness(pose) else pose.arm.n - pose.arm.k

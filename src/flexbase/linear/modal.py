@@ -15,6 +15,7 @@ from flexbase.linear.linearise import (
     ReducedArrays,
     check_definite_inertia,
     gain_of,
+    has_arm_stiffness,
     linearise,
     reduced_arrays,
 )
@@ -23,7 +24,6 @@ from flexbase.linear.reduced import RealMode, alignment, robustness
 from flexbase.plant import Pose
 
 POSITIVE_REAL = 1e-8  # relative passivity shortage (1 - cos)/2 up to which a residue counts as positive  [theory §5]
-NEGLIGIBLE = 1e-12  # stiffness of the arm, relative, below which it counts as none
 ONE_JOINT = "One base joint: exact, at any damping."
 UNDAMPED = "Undamped base: exact in the limit of vanishing damping."
 PROPORTIONAL = "Proportional damping: positive residues are sufficient, not necessary."
@@ -134,11 +134,6 @@ def modes(pose: Pose, compensator: HasGain | None = None) -> Modes:
         )
     verdict = all(_is_positive(mode) for mode in found)
     return Modes(pose, tuple(found), rigid_mode, verdict, caveat)
-
-
-def has_arm_stiffness(pose: Pose) -> bool:
-    """Whether gravity stiffens the arm's own motions, so that the reduced form is not exact."""
-    return bool(np.abs(pose.K[pose.arm.m :]).max() > NEGLIGIBLE * np.abs(pose.K).max(initial=0.0))
 
 
 def _reduced(pose: Pose, E: Array, _: HasGain | None) -> tuple[list[Mode], Array, str]:

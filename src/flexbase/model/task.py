@@ -60,6 +60,13 @@ def make_gains(stiffness: ArrayLike, damping: ArrayLike, k: int, where: str = ""
     return Gains(K, D)
 
 
+def checked_gains(gains: Gains, k: int) -> Gains:
+    """Gains that a user made by hand, checked and frozen. Raises InputError."""
+    if not isinstance(gains, Gains):
+        raise InputError(f"gains: {gains!r} is not a pair of gains. Give Gains(stiffness, damping).")
+    return make_gains(gains.stiffness, gains.damping, k, where="gains, ")
+
+
 def check_branch(branch: str) -> str:
     """Return an elbow branch. Raises InputError."""
     if branch not in BRANCHES:

@@ -18,7 +18,7 @@ from flexbase.dynamics.kinematics import Frames, forward, task_jacobian
 from flexbase.dynamics.task import task_error
 from flexbase.errors import InputError
 from flexbase.linear.linearise import HasGain, gain_of
-from flexbase.model.task import Gains
+from flexbase.model.task import Gains, checked_gains
 from flexbase.plant import Plant, Pose
 from flexbase.simulate.builtin import accelerations, keeps_inertia
 from flexbase.simulate.result import Run
@@ -62,7 +62,7 @@ def simulate(
     Raises InputError. A motion that diverges, or leaves M - E > 0, ends early and says so in `Run.stopped`.
     """
     here, there = (_as_pose(plant, pose) for pose in (start, goal))
-    gains = gains if gains is not None else plant.arm.gains
+    gains = plant.arm.gains if gains is None else checked_gains(gains, plant.arm.k)
     if gains is None:
         raise InputError(f"{plant.name}: no task gains. Add a [control] table to the project, or give gains.")
     if not 0.0 < switch < end or not 0.0 < interval <= end - switch:

@@ -11,6 +11,7 @@ from flexbase.checks import choose
 from flexbase.errors import FlexbaseWarning, InputError
 from flexbase.linear.linearise import HasGain
 from flexbase.measures import MEASURES
+from flexbase.model.base import Base
 from flexbase.plant import Plant
 from flexbase.sweep.chart import UNREACHABLE, Chart
 from flexbase.sweep.evaluate import evaluate
@@ -51,6 +52,12 @@ def sweep(
         warnings.warn(
             f"map: {plant.name} has gravity; its sag and stiffness are left out.", FlexbaseWarning, stacklevel=2
         )
+    if any(one.per_mode for one in chosen) and not _proportional(arm.base):
+        warnings.warn(
+            f"map: the damping of {plant.name} couples the modes; a map shows those of the undamped base.",
+            FlexbaseWarning,
+            stacklevel=2,
+        )
     if any(one.name == "compensability" for one in chosen) and (arm.m != 1 or arm.k != arm.n):
         raise InputError(
             f"measure compensability: one base joint and as many task rows as arm joints are needed, "
@@ -88,6 +95,15 @@ def _grid(
     if over == "joints":
         return joint_grid(plant, shape, bounds, joints, hold)
     raise InputError(f'over: "{over}" is unknown. Give "tip" or "joints".')
+
+
+def _proportional(base: Base) -> bool:
+    """Whether mode shapes are real in every configuration: no damping, one joint, or damping like the stiffness."""
+    D, K = base.damping, base.stiffness
+    if base.m <= 1 or not D.any():
+        return True
+    ratio = np.trace(D) / np.trace(K)
+    return bool(np.abs(D - ratio * K).max() <= 1e-12 * np.abs(D).max())
 
 
 def _gain(plant: Plant, compensator: HasGain) -> np.ndarray:

@@ -53,7 +53,7 @@ def _what(error: ErrorDetails) -> str:
         case "model_type" | "dict_type":
             return f"{shown(value)} stands where a table is needed."
         case "literal_error":
-            return f"{shown(value)} is not one of {context['expected']}."
+            return f"{shown(value)} is not valid. Give {context['expected']}."
         case "value_error":
             return f"{context['error']}. Give finite numbers in SI units, in brackets."
         case _:

@@ -11,6 +11,7 @@ from scipy.stats import spearmanr
 
 from flexbase.checks import Array
 from flexbase.design import design
+from flexbase.design.exact import compensability
 from flexbase.errors import FlexbaseWarning, Infeasible, InputError
 from flexbase.linear.linearise import Gain
 from flexbase.linear.modal import modes
@@ -122,12 +123,12 @@ def ellipse_cell(plant: Plant, tip: tuple[float, float]) -> EllipseCell:
 def ellipse_field(
     plant: Plant, spacing: float = SPACING, progress: Callable[[int, int], None] = lambda done, total: None
 ) -> EllipseField:
-    """All cells; `progress` is called with the cells done and all cells."""
+    """All cells; `progress` is called before each with the cells done and all cells."""
     tips = ellipse_tips(plant, spacing)
-    cells = []
+    cells: list[EllipseCell] = []
     for tip in tips:
-        cells.append(ellipse_cell(plant, tip))
         progress(len(cells), len(tips))
+        cells.append(ellipse_cell(plant, tip))
     return EllipseField(tuple(cells))
 
 
@@ -137,10 +138,10 @@ def _designed(pose: Pose, method: str, frequency: float, **options: str) -> tupl
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", FlexbaseWarning)
             found = design(pose, method, natural_frequency=frequency, **options)
-    except Infeasible as fault:
+    except Infeasible:
         if method == "recursive":
             return None, LOST
-        return None, OUT_OF_REACH if "out of reach" in str(fault) else NO_GAIN
+        return None, OUT_OF_REACH if np.isfinite(compensability(pose).slowest) else NO_GAIN
     if found.certificate.target_residual > NEAR:
         return None, UNFINISHED
     return found.E, REACHED

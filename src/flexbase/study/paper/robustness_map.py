@@ -76,9 +76,12 @@ def robustness_map(
     arm = plant.arm
     planar = two_joint_arm(arm.mechanism, arm.task, arm.base.equilibrium)
     if planar is None or arm.m != 1:
-        raise InputError(f"{plant.name}: this map needs two parallel arm joints in the task's plane and one base joint.")
+        raise InputError(
+            f"{plant.name}: this map needs two parallel arm joints in the task's plane and one base joint."
+        )
     inner, outer = abs(planar.upper - planar.fore), planar.upper + planar.fore
-    radii = np.linspace(inner + RIM * outer, outer - RIM * outer, shape[0])[:, None]
+    dense_at_rims = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, shape[0]))[:, None]  # where w changes fastest
+    radii = inner + RIM * outer + (outer - inner - 2.0 * RIM * outer) * dense_at_rims
     angles = np.linspace(-np.pi, np.pi, shape[1])[None, :]
     x, y = planar.shoulder[0] + radii * np.cos(angles), planar.shoulder[1] + radii * np.sin(angles)
     targets = np.column_stack([x.ravel(), y.ravel()])

@@ -1,0 +1,26 @@
+"""Maps over the workspace: where the arm is robust, and where a compensator can make it so."""
+
+from pathlib import Path
+
+import numpy as np
+
+import flexbase as fb
+
+plant = fb.load("ueda2003")
+chart = fb.sweep(plant, measures=["robustness", "compensability"], over="tip", shape=(200, 200))
+print(chart.summary())
+
+reached = chart.status == 0
+compensable = chart.values["compensability"][reached] > 0.0
+print(f"  compensable: {100.0 * np.mean(compensable):.0f} % of the workspace")
+
+robustness = chart.values["robustness"][..., 0]
+print("\nDistance from the robust arm configuration, 0 (near) to 9 (far), y upwards:")
+for row in range(len(robustness) - 1, -1, -12):
+    levels = np.minimum(9.99, 10.0 * robustness[row, ::6] / np.nanmin(robustness))
+    print("  " + "".join(" " if np.isnan(level) else str(int(level)) for level in levels))
+
+out = Path("out/examples")
+out.mkdir(parents=True, exist_ok=True)
+chart.save_csv(out / "map.csv")
+print(f"\nAll cells: {out / 'map.csv'}")

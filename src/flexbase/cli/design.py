@@ -1,0 +1,63 @@
+"""`flexbase design`: a compensator for one pose."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from cyclopts import App, Parameter
+
+from flexbase.cli import units
+from flexbase.cli.certificate import tables
+from flexbase.cli.document import document
+from flexbase.cli.gains import GainOptions
+from flexbase.cli.method import MethodOptions
+from flexbase.cli.options import Json
+from flexbase.cli.out import OutFile, check_out, written
+from flexbase.cli.pose import PoseOptions, Robot
+from flexbase.cli.show import put
+from flexbase.design import design as design_at
+from flexbase.errors import Infeasible
+from flexbase.plant import load
+
+app = App(
+    name="design",
+    help_epilogue="""Examples:
+  flexbase design ueda2003 --tip 0.33,-0.25 --natural-frequency 346.8
+  flexbase design ueda2003 --tip 0.33,-0.25 --objective least-radius -o E.json
+  flexbase design ueda2003 --tip 0.33,-0.25 --method recursive --seed 1
+
+The file works with modes, simulate, ellipsoid and map: --compensator E.json
+Exit status: 0 designed, 1 none exists (the reason is said), 2 wrong input.""",
+)
+Out = Annotated[OutFile, Parameter(help="write the compensator as JSON")]
+
+
+@app.default
+def design(
+    robot: Robot,
+    /,
+    *,
+    pose: PoseOptions = PoseOptions(),  # noqa: B008
+    by: MethodOptions = MethodOptions(),  # noqa: B008
+    loop: GainOptions = GainOptions(),  # noqa: B008
+    out: Out = None,
+    json: Json = False,
+) -> int:
+    """Design E of tau = tau~ + E q'' at a pose, with the certificate of what it does."""
+    check_out(out, (".json",))
+    plant = load(robot)
+    gains = loop.gains(plant)
+    try:
+        found = design_at(pose.pose(plant), by.method, **by.given(plant), **({} if gains is None else {"gains": gains}))
+    except Infeasible as reason:
+        if not json:
+            raise
+        put(document("design", {"infeasible": str(reason)}))
+        return 1
+    kinds = ["rad" if kind == "revolute" else "m" for kind in plant.arm.mechanism.joint_types[plant.arm.m :]]
+    if out is not None:
+        found.save(out)
+    put(document("design", found.to_dict())) if json else put(
+        *tables(found, units.common("inertia", kinds)), *written(out)
+    )
+    return 0

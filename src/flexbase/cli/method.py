@@ -1,0 +1,49 @@
+"""The design method and its options, passed on only where they are given."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from cyclopts import Group, Parameter
+
+from flexbase.cli.options import option
+from flexbase.cli.words import Vector, number, numbers, whole
+from flexbase.errors import InputError
+from flexbase.plant import Plant
+
+METHOD = Group("Method", sort_key=15)
+
+
+@Parameter(name="*", group=METHOD)
+@dataclass(frozen=True)
+class MethodOptions:
+    """How a compensator is designed."""
+
+    method: Annotated[str, Parameter(metavar="NAME", help="exact (if left out), recursive or task-priority")] = "exact"
+    natural_frequency: Annotated[
+        Vector | None, option(numbers, "W", "wanted [rad/s]; a list for task-priority, slowest mode first")
+    ] = None
+    objective: Annotated[str | None, Parameter(metavar="NAME", help="exact: least-gain or least-radius")] = None
+    derivatives: Annotated[str | None, Parameter(metavar="NAME", help="recursions: estimated or exact")] = None
+    step: Annotated[float | None, option(number, "G", "recursions: share of the way in a step, up to 1")] = None
+    iterations: Annotated[int | None, option(whole, "N", "recursions: number of steps")] = None
+    seed: Annotated[int | None, option(whole, "N", "recursions: seed of the random variations")] = None
+
+    def given(self, plant: Plant) -> dict[str, Any]:
+        """The options given, under the library's names. Raises InputError on a wrong count of frequencies."""
+        frequency: Vector | float | None = self.natural_frequency
+        if self.natural_frequency is not None:
+            count, m = len(self.natural_frequency), plant.arm.m
+            if count not in (1, m):
+                raise InputError(f"--natural-frequency: {count} numbers given, {m} needed: one for each mode.")
+            frequency = self.natural_frequency[0] if count == 1 else self.natural_frequency
+        asked = {
+            "natural_frequency": frequency,
+            "objective": self.objective,
+            "derivatives": self.derivatives,
+            "step": self.step,
+            "iterations": self.iterations,
+            "seed": self.seed,
+        }
+        return {name: value for name, value in asked.items() if value is not None}

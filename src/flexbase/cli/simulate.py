@@ -1,0 +1,74 @@
+"""`flexbase simulate`: move the tip, then settle it."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from cyclopts import App, Group, Parameter
+
+from flexbase.cli.document import document
+from flexbase.cli.gains import GainOptions
+from flexbase.cli.options import CompensatorFile, Json, option
+from flexbase.cli.out import Out, check_out, write_out, written
+from flexbase.cli.pose import Elbow, Robot, compensator_of, tip_pose
+from flexbase.cli.run import tables
+from flexbase.cli.show import put
+from flexbase.cli.words import Vector, number, numbers
+from flexbase.plant import load
+from flexbase.simulate import simulate as run_of
+
+app = App(
+    name="simulate",
+    help_epilogue="""Examples:
+  flexbase simulate ueda2003 --from 0.33,0.25 --to 0.33,-0.25
+  flexbase simulate ueda2003 --from 0.33,0.25 --to 0.33,-0.25 \\
+      --compensator E.json --out run.png
+
+Settled: the tip comes below 0.1 mm after the switch and stays there.
+Exit status: 0 settled, 1 did not settle, 2 wrong input.""",
+)
+MOVE = Group("Move", sort_key=10)
+
+
+@app.default
+def simulate(
+    robot: Robot,
+    /,
+    *,
+    start: Annotated[Vector, option(numbers, "X,Y", "where the tip starts [m, rad]", name="--from", group=MOVE)],
+    goal: Annotated[Vector, option(numbers, "X,Y", "where it settles [m, rad]", name="--to", group=MOVE)],
+    elbow: Annotated[Elbow, Parameter(group=MOVE)] = None,
+    trajectory: Annotated[
+        str, Parameter(group=MOVE, metavar="NAME", help="quintic (if left out) or trapezoidal")
+    ] = "quintic",
+    switch: Annotated[float, option(number, "S", "task-space loop takes over [s], 0.1", group=MOVE)] = 0.1,
+    end: Annotated[float, option(number, "S", "end of the run [s], 0.4", group=MOVE)] = 0.4,
+    interval: Annotated[float, option(number, "S", "between samples [s], 0.0002", group=MOVE)] = 2e-4,
+    compensator: CompensatorFile = None,
+    compensate: Annotated[
+        str, Parameter(metavar="WHEN", help="settle (from the switch on, if left out) or always")
+    ] = "settle",
+    loop: GainOptions = GainOptions(),  # noqa: B008
+    out: Out = None,
+    json: Json = False,
+) -> int:
+    """Joint tracking up to the switch, then the task-space loop, on the nonlinear model."""
+    check_out(out)
+    plant = load(robot)
+    here, there = tip_pose(plant, "--from", start, elbow), tip_pose(plant, "--to", goal, elbow)
+    found = run_of(
+        plant,
+        here,
+        there,
+        compensator_of(plant, compensator),
+        gains=loop.gains(plant),
+        switch=switch,
+        end=end,
+        interval=interval,
+        trajectory=trajectory,
+        compensate=compensate,
+    )
+    content = found.to_dict()
+    write_out(out, "simulate", found, content)
+    put(document("simulate", content)) if json else put(*tables(found), *written(out))
+    return 0 if found.settled else 1

@@ -1,0 +1,58 @@
+"""Words of a command line as values: numbers, lists, signs; each fault names its option and value."""
+
+from __future__ import annotations
+
+import math
+
+from flexbase.errors import InputError
+from flexbase.model.task import BRANCHES
+
+Vector = tuple[float, ...]
+Names = tuple[str, ...]
+
+
+def number(text: str, option: str) -> float:
+    """A finite number. Raises InputError."""
+    try:
+        value = float(text)
+    except ValueError:
+        raise InputError(f'{option}: "{text}" is not a number. Give a number, such as 0.25 or 1e5.') from None
+    if not math.isfinite(value):
+        raise InputError(f'{option}: "{text}" is not finite. Give a finite number.')
+    return value
+
+
+def whole(text: str, option: str) -> int:
+    """A whole number from 0 up. Raises InputError."""
+    if not (text.isascii() and text.isdigit()):
+        raise InputError(f'{option}: "{text}" is not a whole number from 0 up.')
+    return int(text)
+
+
+def numbers(text: str, option: str) -> Vector:
+    """Numbers with commas between them. Raises InputError."""
+    return tuple(number(part.strip(), option) for part in _parts(text, option))
+
+
+def counts(text: str, option: str) -> tuple[int, ...]:
+    """Whole numbers with commas between them. Raises InputError."""
+    return tuple(whole(part.strip(), option) for part in _parts(text, option))
+
+
+def names(text: str, option: str) -> Names:
+    """Names with commas between them. Raises InputError."""
+    return tuple(part.strip() for part in _parts(text, option))
+
+
+def sign(text: str, option: str) -> str:
+    """A side of the elbow. Raises InputError."""
+    if text not in BRANCHES:
+        raise InputError(f'{option}: "{text}" is neither + (0 < elbow angle < pi) nor -.')
+    return text
+
+
+def _parts(text: str, option: str) -> list[str]:
+    parts = text.split(",")
+    if not all(part.strip() for part in parts):
+        raise InputError(f'{option}: "{text}" has an empty entry. Give a list with commas, such as 0.33,-0.25.')
+    return parts

@@ -1,0 +1,52 @@
+"""Draw any result: `plot` chooses by its type, `save_plot` writes a file.
+
+One function a type, registered on `plot`; a new result is drawn by one more.
+"""
+
+from __future__ import annotations
+
+from functools import singledispatch
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from flexbase.control.compensator import Compensator
+from flexbase.errors import InputError
+from flexbase.linear.modal import Modes
+from flexbase.measures.manipulability import Manipulability
+from flexbase.report.draw_chart import draw_chart
+from flexbase.report.draw_compensator import draw_compensator
+from flexbase.report.draw_manipulability import draw_manipulability
+from flexbase.report.draw_modes import draw_modes
+from flexbase.report.draw_run import draw_run
+from flexbase.report.save import check_picture_path, save_figure
+from flexbase.report.style import styled
+from flexbase.simulate import Run
+from flexbase.sweep import Chart
+
+
+@singledispatch
+def plot(result: object) -> Figure:
+    """A figure of a result: `Modes`, `Compensator`, `Run`, `Chart` or `Manipulability`.
+
+    The figure belongs to no window: save it with `save_plot`, or show it in a notebook.
+    Raises InputError for anything else.
+    """
+    drawable = ", ".join(kind.__name__ for kind in plot.registry if kind is not object)
+    raise InputError(f"plot: a {type(result).__name__} cannot be drawn. Give one of {drawable}.")
+
+
+plot.register(Modes)(styled()(draw_modes))
+plot.register(Compensator)(styled()(draw_compensator))
+plot.register(Run)(styled()(draw_run))
+plot.register(Chart)(styled()(draw_chart))
+plot.register(Manipulability)(styled()(draw_manipulability))
+
+
+def save_plot(result: object, path: str | Path) -> None:
+    """Draw a result into a file, png, svg or pdf by its suffix.
+
+    Raises InputError for a result that cannot be drawn, another suffix, or a place that cannot be written.
+    """
+    check_picture_path(path)  # before the work of drawing
+    save_figure(plot(result), path)
