@@ -11,7 +11,7 @@ demo: $(VENV)/.core               ## reproduce the paper into out/paper
 test: check                       ## everything that CI asks for
 
 check: lint                       ## linters, types, layers, tests, docs
-	$(BIN)/python -m pytest -n auto
+	$(BIN)/python -m pytest -n auto --dist loadfile
 	$(MAKE) --no-print-directory docs
 
 lint: $(VENV)/.test

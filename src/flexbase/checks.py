@@ -19,10 +19,10 @@ def finite_array(name: str, value: ArrayLike) -> Array:
     """Return `value` as a read-only array of finite doubles. Raises InputError."""
     try:
         array = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError) as fault:
-        raise InputError(f"{name}: {value!r} is not an array of numbers.") from fault
+    except (TypeError, ValueError, OverflowError) as fault:
+        raise InputError(f"{name}: {str(value)[:60]} is not an array of numbers.") from fault
     if not np.all(np.isfinite(array)):
-        raise InputError(f"{name}: {value!r} is not finite. Give finite numbers.")
+        raise InputError(f"{name}: {str(value)[:60]} is not finite. Give finite numbers.")
     array.flags.writeable = False
     return array
 

@@ -154,7 +154,7 @@ def load(robot: str | Path) -> Plant:
 
 def _check_inertia(pose: Pose) -> None:
     eigenvalues = np.linalg.eigvalsh(pose.M)
-    if eigenvalues[0] <= 0.0:
+    if eigenvalues[0] <= np.finfo(float).eps * eigenvalues[-1]:
         raise InputError(
             f"{pose.plant.name}: the inertia matrix at q = {np.round(pose.q, 4).tolist()} is not positive definite "
             f"(smallest eigenvalue {eigenvalues[0]:.3g}). Give the massless links a mass or an inertia."

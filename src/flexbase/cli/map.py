@@ -25,7 +25,7 @@ app = App(
   flexbase map ueda2003 --measures robustness,alignment --over joints
   flexbase map ueda2003 --bounds -0.4,0.8,-0.6,0.6 --shape 200,200 -o map.csv
 
-Measures: robustness, alignment, frequency, damping, compensability,
+Measures: robustness, alignment, turn, frequency, damping, compensability,
 manipulability.""",
 )
 Out = Annotated[OutFile, Parameter(help="write a picture (.png .svg .pdf), .csv or .json")]

@@ -37,7 +37,7 @@ def reproduce(*, out: Folder = Path("out/paper"), json: Json = False) -> None:
         return
     rows, notes = _with_notes(found.summary_rows())
     put(title("Ueda and Yoshikawa, ICRA 2003", f"figures and numbers in {out}"))
-    put(table(["quantity", "paper", "ours", "difference", "note"], rows))
+    put(table(["quantity", "paper", "ours", "difference", "note"], rows, widest=12))
     put(facts([(str(i), note) for i, note in enumerate(notes, start=1)]))
 
 

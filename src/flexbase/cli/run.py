@@ -29,6 +29,8 @@ def tables(found: Run) -> list[RenderableType]:
         ("samples", f"{len(found.t)}, to {number(float(found.t[-1]), 6)} s"),
     ]
     heading = f"simulated {'with' if found.compensated else 'without'} compensator, switch at {found.switch:g} s"
+    if found.caution:
+        said.append(("caution", found.caution))
     end = verdict(found.settled, "Settles below 0.1 mm", "Does not settle below 0.1 mm", found.stopped or "")
     drives = table(["joint", "peak torque", "peak speed"], rows)
     return [title(found.goal.plant.name, heading), drives, facts(said), "", end]

@@ -58,12 +58,22 @@ def facts(rows: Iterable[tuple[str, object]]) -> RenderableType:
 
 
 def table(
-    columns: Sequence[str], rows: Iterable[Sequence[str]], words: Sequence[int] = (0,), blank_after: bool = True
+    columns: Sequence[str],
+    rows: Iterable[Sequence[str]],
+    words: Sequence[int] = (0,),
+    *,
+    blank_after: bool = True,
+    widest: int | None = None,
 ) -> RenderableType:
-    """A table; the columns numbered in `words` are aligned left, the others hold numbers."""
+    """A table; the columns numbered in `words` are aligned left, the others hold numbers.
+
+    widest : of the columns after the first, in characters
+    """
     drawn = Table(box=box.SIMPLE_HEAD, header_style=HEAD, pad_edge=False, show_edge=False)
     for index, column in enumerate(columns):
-        drawn.add_column(column, justify="left" if index in words else "right", overflow="fold")
+        drawn.add_column(
+            column, justify="left" if index in words else "right", overflow="fold", max_width=widest if index else None
+        )
     for row in rows:
         drawn.add_row(*row)
     return Padding(drawn, (1, 0, 1 if blank_after else 0, 2))

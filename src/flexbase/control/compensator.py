@@ -22,7 +22,7 @@ class Certificate:
     min_eig_modified_inertia : smallest eigenvalue of M - E, positive if the arm stays an inertia  [U03 eq 11]
     robustness_before, robustness_after : w_i  [U03 eq 9]
     frequency_before_rad_s, frequency_after_rad_s : omega_i
-    target_residual : how far the design's own equations are from holding, relative
+    target_residual : how far the design's own equations are from holding, relative; None for a gain from elsewhere
     algebraic_loop_radius : rho; one common delay destabilises at 1 and above  [theory §8]
     algebraic_loop_radius_per_joint : mu; the same with another delay in each joint  [theory §8]
     lag_margin_s : first-order lag of the acceleration feedback that the loop bears; None: no limit to 1 s, or no gains
@@ -35,7 +35,7 @@ class Certificate:
     robustness_after: tuple[float, ...]
     frequency_before_rad_s: tuple[float, ...]
     frequency_after_rad_s: tuple[float, ...]
-    target_residual: float
+    target_residual: float | None
     algebraic_loop_radius: float
     algebraic_loop_radius_per_joint: float
     lag_margin_s: float | None

@@ -20,6 +20,7 @@ from flexbase.linear.modal import modes
 from flexbase.model.task import Gains, checked_gains
 from flexbase.plant import Pose
 
+NEARLY_SINGULAR = 0.01  # lambda_min(M - E) over that of M
 MISSED = 1e-3  # relative miss of the targets that deserves a word
 
 
@@ -28,20 +29,28 @@ def certify(
     method: str,
     E: Array,
     *,
-    target_residual: float = 0.0,
+    target_residual: float | None = None,
     gains: Gains | None = None,
     history: dict[str, Array] | None = None,
+    cautions: tuple[str, ...] = (),
 ) -> Compensator:
     """A compensator with its certificate at `pose`. Assumes M - E > 0.
 
+    target_residual : how far the method's own equations are from holding; None if the gain was not designed here
     gains : for the closed loop; the project's own if left out
+    cautions : the method's own; they take the place of the general one about missed targets
     Warns when the algebraic loop does not bear a common delay.
     """
     E = check_symmetric("E", finite_array("E", E), "")
     gains = pose.arm.gains if gains is None else checked_gains(gains, pose.arm.k)
     before, after = modes(pose).modes, modes(pose, Gain(E)).modes
     rho, mu = algebraic_loop_radius(pose, E), algebraic_loop_radius_per_joint(pose, E)
-    cautions = (*_cautions_of_targets(target_residual), *_cautions_of_loop(rho, mu), *_cautions_of_arm(pose))
+    cautions = (
+        *(cautions or _cautions_of_targets(target_residual)),
+        *_cautions_of_loop(rho, mu),
+        *_cautions_of_inertia(pose, E),
+        *_cautions_of_arm(pose),
+    )
     for caution in cautions:
         warnings.warn(caution, FlexbaseWarning, stacklevel=4)
     certificate = Certificate(
@@ -60,8 +69,8 @@ def certify(
     return Compensator(method, pose.plant.name, E, pose.q, certificate, history or {})
 
 
-def _cautions_of_targets(residual: float) -> tuple[str, ...]:
-    if residual <= MISSED:
+def _cautions_of_targets(residual: float | None) -> tuple[str, ...]:
+    if residual is None or residual <= MISSED:
         return ()
     return (
         f"the design misses its targets by {100.0 * residual:.2g} %: see robustness_after and frequency_after_rad_s.",
@@ -92,3 +101,10 @@ def _cautions_of_arm(pose: Pose) -> tuple[str, ...]:
             "left out of the closed loop's figures."
         )
     return tuple(cautions)
+
+
+def _cautions_of_inertia(pose: Pose, E: Array) -> tuple[str, ...]:
+    left, own = (float(np.linalg.eigvalsh(inertia)[0]) for inertia in (modified_inertia(pose, E), pose.M))
+    if left >= NEARLY_SINGULAR * own:
+        return ()
+    return (f"M - E is nearly singular: {left:.2g} against {own:.2g} without E. Small model errors make it run away.",)

@@ -25,9 +25,10 @@ STEP = 0.02  # g1 of the paper's example
 ITERATIONS = 800
 RAISE = 1.25  # default target over the present frequency; the paper's example raises it by 1.2515
 RAISE_SEVERAL = 1.05  # the same for several modes, which share one E
-TRIAL = 1e-5  # size of the small variations from which H is estimated, relative to the arm's inertia
+TRIAL = 1e-5  # size of the small variations from which H is estimated, relative to lambda_min(Mhat - E)
 NEGLIGIBLE = 1e-9  # singular values of the first mode's scaled H below this are taken as zero
 LEFT_OVER = 0.1  # the same for later modes: directions that earlier modes leave nearly no freedom in are given up
+LOST = 0.5  # relative miss of the first mode's targets from which the answer is no
 HALVINGS = 30  # of a step that would leave M - E > 0
 
 
@@ -44,9 +45,9 @@ def shape_recursively(
 ) -> Compensator:
     """Drive [w_i, omega_i] towards [0, target] by repeated small steps in E, from E = 0; earlier modes take priority.
 
-    Raises Infeasible, with the iteration, if M - E stops being positive definite.
+    Raises Infeasible, with the iteration, if M - E stops being positive definite or the first mode ends far off.
     """
-    _check_options(pose, method, step, iterations, derivatives)
+    _check_options(pose, method, step, iterations, derivatives, seed)
     now = first = mode_parameters(pose, np.zeros((pose.arm.n, pose.arm.n)))
     targets = np.zeros_like(now.values)
     targets[:, 1] = (RAISE if pose.arm.m == 1 else RAISE_SEVERAL) * now.values[:, 1]
@@ -62,21 +63,28 @@ def shape_recursively(
             E, now = _advance(pose, E, _priority_step(H, step * (targets - now.values)))
         except Infeasible as fault:
             raise Infeasible(
-                f"{method}: after {iteration} of {iterations} iterations {fault} Ask for lower natural frequencies, "
+                f"{method}: after {iteration} of {iterations} iterations {fault} Ask for other natural frequencies, "
                 "a smaller step or another pose."
             ) from fault
         track.append(_record(pose, E, now))
-    scale = np.column_stack([2.0 * first.residue_sizes, targets[:, 1]])  # w/(2|R|) is theory §4's relative shortage
-    residual = float(np.abs((now.values - targets) / np.where(scale > 0.0, scale, 1.0)).max())
+    scale = np.column_stack([2.0 * first.residue_sizes, targets[:, 1]])  # theory §4's relative shortage
+    missed = np.abs((now.values - targets) / np.where(scale > 0.0, scale, 1.0)).max(axis=1)
+    if missed[0] > LOST:
+        raise Infeasible(
+            f"{method}: after {iterations} of {iterations} iterations the first mode misses its targets by {missed[0]:.0%}. "
+            "Ask for other natural frequencies or another pose."
+        )
     history = dict(zip(("robustness", "frequency_rad_s", "min_eig_modified_inertia"), np.array(track).T, strict=True))
-    return certify(pose, method, E, target_residual=residual, gains=gains, history=history)
+    return certify(pose, method, E, target_residual=float(missed.max()), gains=gains, history=history)
 
 
-def _check_options(pose: Pose, method: str, step: float, iterations: int, derivatives: str) -> None:
+def _check_options(pose: Pose, method: str, step: float, iterations: int, derivatives: str, seed: int) -> None:
     if pose.arm.m == 0:
         raise InputError(f"{method}: the base is rigid, so there is no mode to shape.")
     if not 0.0 < step <= 1.0:
         raise InputError(f"step: {step:g} must be above 0 and at most 1. The paper uses {STEP:g}.")
+    if seed < 0:
+        raise InputError(f"seed: {seed} must be 0 or more.")
     if iterations < 1:
         raise InputError(f"iterations: {iterations} must be 1 or more. The paper uses {ITERATIONS}.")
     if derivatives not in ("estimated", "exact"):
@@ -86,7 +94,8 @@ def _check_options(pose: Pose, method: str, step: float, iterations: int, deriva
 def _estimate(pose: Pose, E: Array, now: ModeParameters, H: Array, rng: np.random.Generator) -> Array:
     """H <- H + (Y - H X) X^+ from small random variations X of rho and the changes Y they cause.  [U03 eq 16]"""
     rho = upper_triangle(E)
-    size = TRIAL * float(np.linalg.norm(pose.M[pose.arm.m :, pose.arm.m :]))
+    left = modified_inertia(pose, E)[pose.arm.m :, pose.arm.m :]
+    size = TRIAL * float(np.linalg.eigvalsh(left)[0])
     X = size * rng.standard_normal((len(rho), len(rho)))
     moved = [mode_parameters(pose, symmetric(rho + variation, pose.arm.n)).values - now.values for variation in X.T]
     Y = np.moveaxis(np.array(moved), 0, -1)

@@ -45,6 +45,8 @@ def two_joint_arm(mechanism: Mechanism, task: Task, base_rest: Array) -> TwoJoin
     plane = list(rows)
     shoulder, elbow = (np.cross(axis, joint.linear)[plane] for joint in (first, second))
     upper, fore = elbow - shoulder, np.array(frames.tool_position)[plane] - elbow
+    if not (upper.any() and fore.any()):
+        return None
     return TwoJointArm(
         shoulder,
         float(np.hypot(*upper)),

@@ -41,8 +41,8 @@ def algebraic_loop_radius_per_joint(pose: Pose, E: Array) -> float:
     """
     A = loop_matrix(pose, E)
     n = len(A)
-    if not A.any():
-        return 0.0
+    if n == 1 or not A.any():
+        return float(np.abs(np.linalg.eigvals(A)).max())
     phases = np.random.default_rng(0).uniform(-np.pi, np.pi, (PHASE_STARTS, n))
     phases[0], phases[:, 0] = 0.0, 0.0  # a phase common to all joints changes nothing
     radii = np.abs(np.linalg.eigvals(A * np.exp(1j * phases)[:, None, :])).max(axis=1)

@@ -24,6 +24,7 @@ from flexbase.linear.reduced import RealMode, alignment, robustness
 from flexbase.plant import Pose
 
 POSITIVE_REAL = 1e-8  # relative passivity shortage (1 - cos)/2 up to which a residue counts as positive  [theory §5]
+VANISHING = 1e-12  # a mode that the tip sees or drives less than this, relative, is out of its reach
 ONE_JOINT = "One base joint: exact, at any damping."
 UNDAMPED = "Undamped base: exact in the limit of vanishing damping."
 PROPORTIONAL = "Proportional damping: positive residues are sufficient, not necessary."
@@ -159,7 +160,7 @@ def _with_arm_stiffness(pose: Pose, E: Array, compensator: HasGain | None) -> tu
     if m == 0:
         return [], reduced_arrays(pose, E).R0, RIGID
     poles = damped_poles(system.M, system.D, system.K)
-    poles.sort(key=lambda pole: -_base_energy_share(pole, system.M, pose.arm.base.stiffness))
+    poles.sort(key=lambda pole: -_base_stiffness_of(pole, system.M, pose.arm.base.stiffness))
     base_poles = sorted(poles[:m], key=lambda pole: abs(pole.value))
     found = [_damped_mode(pose, p, system.C @ p.shape, system.B.T @ p.shape, p.shape) for p in base_poles]
     leading = system.C @ np.linalg.solve(
@@ -177,14 +178,15 @@ def _real_mode(pose: Pose, reduced: ReducedArrays, real: RealShapes, index: int)
         frequency,
         float(real.damping[index]) / (2.0 * frequency),
     )
-    vanishes = not any(mode.a) or not any(mode.b)
+    seen, driven, moved = (float(np.linalg.norm(v)) for v in (mode.a, mode.b, np.subtract(mode.b, mode.a)))
+    vanishes = min(seen, driven) <= VANISHING * (driven + moved)  # a = V phi - Jp phi up to sign: rounding of the two
     participation = _participation(pose, phi)
     return Mode(
         frequency=frequency,
         damping_ratio=mode.damping_ratio,
         residue=np.outer(mode.a, mode.b),
         residue_s=np.zeros((pose.arm.k, pose.arm.k)),
-        robustness=float(robustness(mode.a, mode.b)),
+        robustness=0.0 if vanishes else float(robustness(mode.a, mode.b)),
         alignment=None if vanishes else float(alignment(mode.a, mode.b)),
         shape=_scaled(_follow(reduced, phi)),
         participation=participation,
@@ -237,11 +239,11 @@ def _label(pose: Pose, participation: Array) -> str:
     return ", ".join(label)
 
 
-def _base_energy_share(pole: Pole, M: Array, base_stiffness: Array) -> float:
+def _base_stiffness_of(pole: Pole, M: Array, base_stiffness: Array) -> float:
+    """Rayleigh quotient of the base springs alone: large for the modes that the base makes."""
     base = pole.shape[: len(base_stiffness)]
     strain = np.real(np.conj(base) @ base_stiffness @ base)
-    kinetic = abs(pole.value) ** 2 * np.real(np.conj(pole.shape) @ M @ pole.shape)
-    return float(strain / kinetic)
+    return float(strain / np.real(np.conj(pole.shape) @ M @ pole.shape))
 
 
 def _is_positive(mode: Mode) -> bool:

@@ -1,6 +1,6 @@
 """Measures of a configuration, one file each; importing them fills the registry."""
 
-from flexbase.measures import alignment, compensability, frequency, manipulability, robustness
+from flexbase.measures import alignment, compensability, frequency, manipulability, robustness, turn
 from flexbase.measures.registry import MEASURES, Configuration, Measure
 
 __all__ = [
@@ -12,4 +12,5 @@ __all__ = [
     "frequency",
     "manipulability",
     "robustness",
+    "turn",
 ]

@@ -33,6 +33,7 @@ def coupling(M: Matrix, J: Matrix) -> Coupling:
     unit="1",
     purpose="1 + y.z/Mpp: positive where a gain can align the one mode",
     zero_is="the border beyond which no gain aligns the mode",
+    needs=lambda m, n, k: None if m == 1 and k == n else "one base joint and as many task rows as arm joints",
 )
 def compensability(configuration: Configuration) -> Scalar:
     """1 + y.z/Mpp: a gain E with w = 0 exists where this is positive.  [theory §7]

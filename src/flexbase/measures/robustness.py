@@ -14,6 +14,7 @@ from flexbase.trace.algebra import Scalar
     purpose="w_i, how far each mode is from positive realness",
     per_mode=True,
     zero_is="the robust arm configuration",
+    zero_line="turn",
 )
 def robustness(mode: RealMode) -> Scalar:
     """w = lambda_min(R + R^T); at most 0 for two and more task rows.  [U03 eq 9, theory §4]

@@ -23,12 +23,16 @@ TAIL = 4.0  # percent of the cells at either end that the colours may leave out
 
 
 class Layer(NamedTuple):
-    """One panel: the name over it, its unit, values of shape (rows, columns), and whether zero means something."""
+    """One panel: the name over it, its unit, values of shape (rows, columns), and what its zero means, if anything.
+
+    zero_line : where the values only touch zero, a companion that changes its sign there
+    """
 
     title: str
     unit: str
     values: Array
     zero_is: str | None
+    zero_line: Array | None = None
 
 
 def draw_chart(chart: Chart) -> Figure:
@@ -59,7 +63,13 @@ def _layers(chart: Chart) -> list[Layer]:
         if values.ndim == 3:
             several = values.shape[-1] > 1
             layers += [
-                Layer(f"{name}{f', mode {i + 1}' if several else ''}", known.unit, values[..., i], known.zero_is)
+                Layer(
+                    f"{name}{f', mode {i + 1}' if several else ''}",
+                    known.unit,
+                    values[..., i],
+                    known.zero_is,
+                    chart.zero_lines[name][..., i] if name in chart.zero_lines else None,
+                )
                 for i in range(values.shape[-1])
             ]
         else:
@@ -117,7 +127,11 @@ def _lines(ax: Axes, x: Array, y: Array, layer: Layer, norm: Normalize) -> None:
     inside = levels[(levels > low) & (levels < high)]
     if inside.size:
         ax.contour(x, y, layer.values, levels=inside, colors=[INK], linewidths=0.35, alpha=0.6, linestyles="solid")
-    if layer.zero_is is not None and low < 0.0 < high:
+    if layer.zero_line is not None:
+        near = np.where(np.abs(layer.zero_line) < np.pi / 2.0, layer.zero_line, np.nan)  # not where it jumps at pi
+        if np.nanmin(near, initial=0.0) < 0.0 < np.nanmax(near, initial=0.0):
+            ax.contour(x, y, near, levels=[0.0], colors=[BLUE], linewidths=2.0)
+    elif layer.zero_is is not None and low < 0.0 < high:
         ax.contour(x, y, layer.values, levels=[0.0], colors=[BLUE], linewidths=2.0)
 
 

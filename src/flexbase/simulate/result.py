@@ -21,7 +21,9 @@ class Run:
     t : shape (T,) [s]; q, rates : shape (T, N); tip_error : against the goal, shape (T, k)
     torque : all that the arm's drives deliver, compensator included, shape (T, n)
     switch : when the task-space loop takes over [s]
+    closed_loop_abscissa : rightmost pole of the linear loop at the goal [1/s]; positive, the run may only be too short
     stopped : why the run ended early, or None
+    engine : the physics behind it, "builtin" or "mujoco"
     """
 
     start: Pose
@@ -33,7 +35,9 @@ class Run:
     torque: Array
     switch: float
     compensated: bool
+    closed_loop_abscissa: float
     stopped: str | None = None
+    engine: str = "builtin"
 
     @property
     def settling(self) -> NDArray[np.bool_]:
@@ -76,6 +80,16 @@ class Run:
         """Largest speed of each arm joint [rad/s or m/s], shape (n,)."""
         return np.asarray(np.abs(self.rates[:, self.goal.arm.m :]).max(axis=0))
 
+    @property
+    def caution(self) -> str | None:
+        """What a settled run may hide: a linear loop that is unstable at the goal and only grows slowly."""
+        if not self.settled or self.closed_loop_abscissa < 0.0:
+            return None
+        return (
+            f"the linear loop is unstable at the goal (rightmost pole {self.closed_loop_abscissa:+.3g} 1/s): "
+            "a longer run would grow."
+        )
+
     def to_dict(self) -> dict[str, Any]:
         """Plain numbers, with units in the names."""
         return {
@@ -85,11 +99,14 @@ class Run:
             "torque": self.torque.tolist(),
             "switch_s": self.switch,
             "compensated": self.compensated,
+            "engine": self.engine,
             "settled": self.settled,
             "settling_time_s": self.settling_time_s,
             "peak_error_m": self.peak_error_m,
             "peak_torque": self.peak_torque.tolist(),
             "peak_speed": self.peak_speed.tolist(),
+            "closed_loop_abscissa": self.closed_loop_abscissa,
+            "caution": self.caution,
             "stopped": self.stopped,
         }
 
@@ -103,6 +120,7 @@ class Run:
         speeds, torques = np.round(self.peak_speed, 3).tolist(), np.round(self.peak_torque, 2).tolist()
         return (
             f"{self.goal.plant.name} {'with' if self.compensated else 'without'} compensator: {verdict}\n"
-            f"  peak error after switching {peak}\n"
+            + (f"  caution: {self.caution}\n" if self.caution else "")
+            + f"  peak error after switching {peak}\n"
             f"  peak torque {torques}, peak speed {speeds}"
         )

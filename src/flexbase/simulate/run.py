@@ -17,7 +17,8 @@ from flexbase.control.trajectories import LAWS, JointPath
 from flexbase.dynamics.kinematics import Frames, forward, task_jacobian
 from flexbase.dynamics.task import task_error
 from flexbase.errors import InputError
-from flexbase.linear.linearise import HasGain, gain_of
+from flexbase.linear.linearise import HasGain, check_definite_inertia, gain_of
+from flexbase.linear.margins import closed_loop_abscissa
 from flexbase.model.task import Gains, checked_gains
 from flexbase.plant import Plant, Pose
 from flexbase.simulate.builtin import accelerations, keeps_inertia
@@ -25,7 +26,8 @@ from flexbase.simulate.result import Run
 from flexbase.trace.algebra import Vector, matvec, stack, unstack
 
 RELATIVE, ABSOLUTE = 1e-8, 1e-10  # of the integrator, a step
-LARGEST_ERROR = 10.0  # m or rad of tip error: beyond, the run has diverged
+FASTEST = 1e3  # rad/s or m/s of a joint: beyond, the motion has diverged
+LARGEST = 1_000_000  # samples of a run
 WHEN = ("settle", "always")
 
 
@@ -65,13 +67,18 @@ def simulate(
     gains = plant.arm.gains if gains is None else checked_gains(gains, plant.arm.k)
     if gains is None:
         raise InputError(f"{plant.name}: no task gains. Add a [control] table to the project, or give gains.")
-    if not 0.0 < switch < end or not 0.0 < interval <= end - switch:
-        raise InputError(f"times: 0 < switch ({switch:g}) < end ({end:g}) and interval ({interval:g}) > 0 are needed.")
+    if not 0.0 < switch < end < np.inf or not end / LARGEST <= interval <= end - switch:
+        raise InputError(
+            f"times: 0 < switch ({switch:g}) < end ({end:g}) and an interval ({interval:g}) from {end / LARGEST:g} to "
+            f"{end - switch:g} are needed."
+        )
     if compensate not in WHEN:
         raise InputError(f'compensate: "{compensate}" is unknown. Give one of {", ".join(WHEN)}.')
     if not bandwidth > 0.0:
         raise InputError(f"bandwidth: {bandwidth:g} rad/s must be above 0.")
     E = None if compensator is None else gain_of(there, compensator)
+    if E is not None:
+        check_definite_inertia(there, E)
     m = plant.arm.m
     path = JointPath(here.q[m:], there.q[m:], switch, choose("trajectory", trajectory, LAWS))
     phases: list[tuple[Law, float, float, Array | None]] = [
@@ -87,8 +94,9 @@ def simulate(
         state = states[-1]
     times, states, torques = (np.concatenate(pieces) for pieces in zip(*_without_doubled_ends(parts), strict=True))
     N = plant.arm.N
+    pole = closed_loop_abscissa(there, np.zeros((plant.arm.n,) * 2) if E is None else E, gains)
     error = task_error(forward(plant.arm.mechanism, tuple(states[:, :N].T)), plant.arm.task, there.tip)
-    return Run(here, there, times, states[:, :N], states[:, N:], error, torques, switch, E is not None, stopped)
+    return Run(here, there, times, states[:, :N], states[:, N:], error, torques, switch, E is not None, pole, stopped)
 
 
 def _as_pose(plant: Plant, pose: Pose | ArrayLike) -> Pose:
@@ -120,7 +128,7 @@ def _trouble(goal: Pose, E: Array | None, solver: DOP853) -> str | None:
     q = solver.y[: goal.arm.N]
     if solver.status == "failed":
         return "the integrator gave up"
-    if not np.all(np.isfinite(solver.y)) or float(np.abs(goal.tip_error(q)).max()) > LARGEST_ERROR:
+    if not np.all(np.isfinite(solver.y)) or float(np.abs(solver.y[goal.arm.N :]).max()) > FASTEST:
         return "the motion diverged"
     if not keeps_inertia(forward(goal.arm.mechanism, unstack(q, 1)), E):
         return "M - E was no longer positive definite"

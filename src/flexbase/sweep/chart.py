@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +39,7 @@ class Chart:
 
     values : a measure's name -> shape (rows, columns), or (rows, columns, m) for measures of each mode; NaN unless OK
     status : shape (rows, columns), a key of `STATUS`
+    zero_lines : for measures that only touch zero, a companion (same shape) that changes its sign near 0 there
     """
 
     plant: Plant
@@ -46,6 +47,7 @@ class Chart:
     values: dict[str, Array]
     status: NDArray[np.int8]
     compensated: bool
+    zero_lines: dict[str, Array] = field(default_factory=dict, repr=False)
 
     def count(self, status: int) -> int:
         """How many cells have a status."""

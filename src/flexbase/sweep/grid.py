@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from flexbase.checks import Array, check_length, finite_array
+from flexbase.checks import Array, check_length
 from flexbase.dynamics.inverse_kinematics import arm_angles_of_many, reach
 from flexbase.dynamics.two_joint_arm import two_joint_arm
 from flexbase.errors import InputError, nearest_name
@@ -38,7 +38,9 @@ def tip_grid(
     if task.k < 2:
         raise InputError(f"map over tip: {plant.name} has one task row, two are needed. Map over joints instead.")
     window = _window(plant) if bounds is None else _checked_bounds(bounds)
-    held = check_length("hold", hold, task.k - 2, f"one for each task row after the second: {task.rows[2:]}")
+    held = check_length(
+        "hold", hold, task.k - 2, f"one for each task row after the second ({' '.join(task.rows[2:]) or 'none'})"
+    )
     axes = tuple(Axis(task.rows[i], task.units[i], _ticks(window, i, shape)) for i in range(2))
     x, y = np.meshgrid(axes[0].values, axes[1].values)
     targets = np.column_stack([x.ravel(), y.ravel(), *(np.full(x.size, value) for value in held)])
@@ -78,12 +80,10 @@ def _ticks(window: Sequence[float], axis: int, shape: tuple[int, int]) -> Array:
 
 
 def _checked_bounds(bounds: Sequence[float]) -> list[float]:
-    window = list(
-        check_length("bounds", finite_array("bounds", bounds), 4, "low, high of the first axis and the second")
-    )
+    window = check_length("bounds", bounds, 4, "low, high of the first axis and of the second").tolist()
     if not (window[0] < window[1] and window[2] < window[3]):
         raise InputError(f"bounds: {window} are not low, high, low, high. Give each low below its high.")
-    return [float(value) for value in window]
+    return list(window)
 
 
 def _window(plant: Plant) -> list[float]:

@@ -58,27 +58,32 @@ def sweep(
             FlexbaseWarning,
             stacklevel=2,
         )
-    if any(one.name == "compensability" for one in chosen) and (arm.m != 1 or arm.k != arm.n):
-        raise InputError(
-            f"measure compensability: one base joint and as many task rows as arm joints are needed, "
-            f"{plant.name} has {arm.m} base joints, {arm.k} rows and {arm.n} arm joints."
-        )
+    for one in chosen:
+        if missing := one.needs(arm.m, arm.n, arm.k):
+            raise InputError(
+                f"measure {one.name}: {missing} needed, {plant.name} has {arm.m} base joints, {arm.n} arm joints and "
+                f"{arm.k} task rows."
+            )
+    lines = [MEASURES[one.zero_line] for one in chosen if one.zero_line]
+    lines = [line for line in lines if line not in chosen and not line.needs(arm.m, arm.n, arm.k)]
     grid = _grid(plant, over, shape, bounds, branch, joints, hold)
     E = None if compensator is None else _gain(plant, compensator)
     total = len(grid.reached)
     status = np.full(total, UNREACHABLE, dtype=np.int8)
-    values = {one.name: np.full((total, arm.m) if one.per_mode else total, np.nan) for one in chosen}
+    values = {one.name: np.full((total, arm.m) if one.per_mode else total, np.nan) for one in chosen + lines}
     cells = np.flatnonzero(grid.reached)
     for begin in range(0, len(cells), BLOCK):
         block = cells[begin : begin + BLOCK]
-        found = evaluate(arm, grid.joints[block], chosen, E)
+        found = evaluate(arm, grid.joints[block], chosen + lines, E)
         status[block] = found.status
         for name, column in found.values.items():
             values[name][block] = column
         progress(int(block[-1]) + 1, total)
     rows, columns = len(grid.axes[1].values), len(grid.axes[0].values)
     folded = {name: column.reshape(rows, columns, *column.shape[1:]) for name, column in values.items()}
-    return Chart(plant, grid.axes, folded, status.reshape(rows, columns), E is not None)
+    shown = {one.name: folded[one.name] for one in chosen}
+    zero_lines = {one.name: folded[one.zero_line] for one in chosen if one.zero_line in folded}
+    return Chart(plant, grid.axes, shown, status.reshape(rows, columns), E is not None, zero_lines)
 
 
 def _grid(

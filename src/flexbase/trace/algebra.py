@@ -60,6 +60,10 @@ def sqrt(x: Scalar) -> Scalar:
     return math.sqrt(x) if isinstance(x, float) else np.sqrt(x)
 
 
+def atan2(y: Scalar, x: Scalar) -> Scalar:
+    return math.atan2(y, x) if isinstance(y, float) and isinstance(x, float) else np.arctan2(y, x)
+
+
 def plus(u: Vector, v: Vector) -> Vector:
     return tuple(add(x, y) for x, y in zip(u, v, strict=True))
 

@@ -42,6 +42,8 @@ def _what(error: ErrorDetails) -> str:
             return f"{value:g} must be above {context['gt']:g}. Give a larger number."
         case "greater_than_equal":
             return f"{value:g} must be {context['ge']:g} or more. Give a larger number."
+        case "less_than_equal":
+            return f"{shown(value)} must be {context['le']:g} or less. Give a smaller number."
         case "finite_number":
             return f"{value} is not finite. Give a finite number."
         case "float_type" | "int_type":

@@ -38,10 +38,10 @@ def load_project(robot: str | Path) -> MountedArm:
         text = (resources.files("flexbase.model.library") / f"{robot}.toml").read_text("utf-8")
         return parse_project(text, robot)
     path = Path(robot)
-    if not path.exists():
+    if not str(robot) or not _exists(path):
         names = bundled()
         hint = nearest_name(str(robot), names)
-        raise InputError(f"{robot}: neither a bundled robot nor a file. {hint}")
+        raise InputError(f'"{str(robot)[:80]}": neither a bundled robot nor a file. {hint}')
     if not path.is_file():
         raise InputError(f"{robot}: is not a file. Give the path of a project file (.toml).")
     try:
@@ -54,14 +54,21 @@ def load_project(robot: str | Path) -> MountedArm:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as fault:
         raise InputError(f"{robot}: not UTF-8 text (byte {fault.start}). A project file is TOML.") from fault
-    return parse_project(text, path.name)
+    return parse_project(text, str(robot))
+
+
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except (OSError, ValueError):  # a name that no file system accepts
+        return False
 
 
 def parse_project(text: str, source: str) -> MountedArm:
     """Turn the text of a project file into an arm on its base; `source` names it in messages. Raises InputError."""
     try:
         tables = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError) as fault:
+    except (ValueError, RecursionError) as fault:
         raise InputError(f"{source}: not valid TOML: {str(fault)[:200]}.") from fault
     try:
         return _build(ProjectFile.model_validate(tables), source)

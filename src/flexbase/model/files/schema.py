@@ -6,6 +6,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 
+LARGEST = 1e12  # of any number of a project, in SI units
+
 
 def _numbers_or_rows(value: Any) -> Any:
     """Accept a list of numbers or a list of rows of numbers, and say plainly what else was found."""
@@ -17,6 +19,8 @@ def _numbers_or_rows(value: Any) -> Any:
                 raise ValueError(f"{shown(number)} is not a number")
             if number != number or number in (float("inf"), float("-inf")):
                 raise ValueError(f"{number} is not finite")
+            if abs(number) > LARGEST:
+                raise ValueError(f"{shown(number)} is beyond {LARGEST:g}")
     lengths = {len(entry) if isinstance(entry, list) else None for entry in value}
     if len(lengths) > 1:
         raise ValueError("its rows differ in length")
@@ -33,7 +37,9 @@ def shown(value: Any) -> str:
         return "a table"
     if isinstance(value, list):
         return f"{str(value)[:60]} (a list)"
-    return str(value)
+    if isinstance(value, int) and abs(value) > LARGEST:
+        return "a huge number"
+    return str(value)[:60]
 
 
 _NUMBERS = {"type": "array", "items": {"type": "number"}}
@@ -55,10 +61,12 @@ class LinkTable(Table):
     """One planar link. Its x axis points along it; revolute joints turn about z, prismatic ones slide along `axis`."""
 
     joint: str = Field(min_length=1, description="name of the joint that moves this link")
-    length: float = Field(ge=0, description="from this joint to the next, or to the tool [m]")
-    mass: float = Field(gt=0, description="[kg]")
-    com: float = Field(description="centre of mass, distance from the joint along the link [m]")
-    inertia: float = Field(ge=0, description="about the centre of mass [kg m^2]")
+    length: float = Field(ge=0, le=LARGEST, description="from this joint to the next, or to the tool [m]")
+    mass: float = Field(gt=0, le=LARGEST, description="[kg]")
+    com: float = Field(
+        ge=-LARGEST, le=LARGEST, description="centre of mass, distance from the joint along the link [m]"
+    )
+    inertia: float = Field(ge=0, le=LARGEST, description="about the centre of mass [kg m^2]")
     type: Literal["revolute", "prismatic"] = Field("revolute", description="kind of joint")
     axis: Numbers = Field([1.0, 0.0], description="prismatic joints: direction in the previous link's x-y plane")
 
@@ -66,7 +74,7 @@ class LinkTable(Table):
 class PayloadTable(Table):
     """A body held at the tool, in the tool frame."""
 
-    mass: float = Field(gt=0, description="[kg]")
+    mass: float = Field(gt=0, le=LARGEST, description="[kg]")
     com: Numbers = Field([0.0, 0.0, 0.0], description="centre of mass from the tool [m], 3 numbers")
     inertia: Numbers = Field(
         [0.0, 0.0, 0.0], description="about its centre of mass [kg m^2]: xx yy zz, or xx yy zz xy xz yz"

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
-
 import numpy as np
 
 from flexbase.checks import Array
@@ -17,72 +14,12 @@ from flexbase.study.paper.ellipses import EllipseCell, EllipseField
 from flexbase.study.paper.example import TARGET_FREQUENCY, Example
 from flexbase.study.paper.settling import Settling
 from flexbase.study.paper.shaping import Shaping
+from flexbase.study.paper.table import PaperRow, PaperTable
 
 NOT_UNIQUE = "E is not unique: three entries, two targets; the paper's rounded E lies near our family of solutions."
 MISPRINT = "The paper's second row does not follow from its own targets, which give a symmetric matrix."
 RANGES = ((-0.01, 0.0), (-0.1, -0.05), (-np.inf, -0.1))  # of w_1: near the robust arm configurations, off, far
 PATH = "The path and the tracking law of the move are not given; ours is a quintic in joint space."
-
-
-@dataclass(frozen=True)
-class PaperRow:
-    """One line of the comparison.
-
-    paper, ours : a number, or words; paper is None where nothing is printed
-    digits : decimals shown, or significant digits where negative
-    """
-
-    quantity: str
-    paper: float | str | None
-    ours: float | str
-    digits: int = 4
-    remark: str = ""
-
-    @property
-    def difference(self) -> float | None:
-        """Ours less the paper's, where both are numbers."""
-        both = isinstance(self.paper, float) and isinstance(self.ours, float)
-        return float(self.ours) - float(self.paper) if both and self.paper is not None else None
-
-    def shown(self) -> tuple[str, str, str, str, str]:
-        """Quantity, paper, ours, difference, remark."""
-        paper = self.paper if isinstance(self.paper, str) else "" if self.paper is None else f"{self.paper:g}"
-        ours = self.ours if isinstance(self.ours, str) else self._number(self.ours)
-        gap = "" if self.difference is None else self._gap(self.difference)
-        return self.quantity, paper, ours, gap, self.remark
-
-    def _number(self, value: float) -> str:
-        return f"{value:.{-self.digits}g}" if self.digits < 0 else f"{value:.{self.digits}f}"
-
-    def _gap(self, value: float) -> str:
-        text = f"{value:+.2g}" if self.digits < 0 else f"{value:+.{self.digits}f}"
-        return "0" if float(text) == 0.0 else text
-
-
-@dataclass(frozen=True)
-class PaperTable:
-    """The paper's numbers beside ours."""
-
-    rows: tuple[PaperRow, ...]
-
-    def summary_rows(self) -> list[tuple[str, str, str, str, str]]:
-        """Quantity, paper, ours, difference and remark of each row, as words."""
-        return [row.shown() for row in self.rows]
-
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers and words."""
-        return {
-            "rows": [
-                {
-                    "quantity": row.quantity,
-                    "paper": row.paper,
-                    "ours": row.ours,
-                    "difference": row.difference,
-                    "remark": row.remark,
-                }
-                for row in self.rows
-            ]
-        }
 
 
 def compare(case: Example, shaped: Shaping, settled: Settling, field: EllipseField) -> PaperTable:

@@ -142,6 +142,6 @@ def _designed(pose: Pose, method: str, frequency: float, **options: str) -> tupl
         if method == "recursive":
             return None, LOST
         return None, OUT_OF_REACH if np.isfinite(compensability(pose).slowest) else NO_GAIN
-    if found.certificate.target_residual > NEAR:
+    if (found.certificate.target_residual or 0.0) > NEAR:
         return None, UNFINISHED
     return found.E, REACHED

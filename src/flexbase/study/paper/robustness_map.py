@@ -14,28 +14,14 @@ from flexbase.dynamics.kinematics import forward
 from flexbase.dynamics.two_joint_arm import two_joint_arm
 from flexbase.errors import InputError
 from flexbase.linear.linearise import HasGain
-from flexbase.linear.reduced import RealMode
-from flexbase.measures import MEASURES, Measure
+from flexbase.measures import MEASURES
 from flexbase.plant import Plant
 from flexbase.sweep.evaluate import evaluate
-from flexbase.trace.algebra import Scalar, dot, stack, unstack
+from flexbase.trace.algebra import stack, unstack
 
 RINGS, SPOKES = 126, 361
 RIM = 1e-6  # of the reach, kept clear of its edges, where the arm is singular
 BLOCK = 16384
-
-
-def turn(mode: RealMode) -> Scalar:
-    """Signed angle from the input shape b to the output shape a, in (-pi, pi] [rad]; two task rows.
-
-    w = |a||b| (cos(turn) - 1) touches zero without changing its sign; this angle passes through zero there, so that
-    the robust arm configurations are its sign changes near 0 (those near pi are the opposite case).
-    """
-    (ax, ay), (bx, by) = mode.a, mode.b
-    return np.arctan2(bx * ay - by * ax, dot(mode.a, mode.b))
-
-
-TURN = Measure("turn", "rad", "signed angle from b to a", True, "the robust arm configuration", turn)
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +74,7 @@ def robustness_map(
     joints, _ = arm_angles_of_many(arm.mechanism, arm.task, arm.base.equilibrium, targets, arm.task.branch)
     E = None if compensator is None else np.asarray(compensator.E)
     blocks = [
-        evaluate(arm, joints[begin : begin + BLOCK], [MEASURES["robustness"], TURN], E)
+        evaluate(arm, joints[begin : begin + BLOCK], [MEASURES["robustness"], MEASURES["turn"]], E)
         for begin in range(0, len(joints), BLOCK)
     ]
     frames = forward(arm.mechanism, (*arm.base.equilibrium.tolist(), *unstack(joints, 1)))
