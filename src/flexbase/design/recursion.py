@@ -71,8 +71,8 @@ def shape_recursively(
     missed = np.abs((now.values - targets) / np.where(scale > 0.0, scale, 1.0)).max(axis=1)
     if missed[0] > LOST:
         raise Infeasible(
-            f"{method}: after {iterations} of {iterations} iterations the first mode misses its targets by {missed[0]:.0%}. "
-            "Ask for other natural frequencies or another pose."
+            f"{method}: after {iterations} of {iterations} iterations the first mode misses its targets by "
+            f"{missed[0]:.0%}. Ask for other natural frequencies or another pose."
         )
     history = dict(zip(("robustness", "frequency_rad_s", "min_eig_modified_inertia"), np.array(track).T, strict=True))
     return certify(pose, method, E, target_residual=float(missed.max()), gains=gains, history=history)
