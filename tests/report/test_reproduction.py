@@ -85,7 +85,7 @@ def test_numbers_behind_figure_7_meet_the_targets(reproduced):
         pytest.approx(277.1029065, rel=1e-8),
     )
     assert w[-1] == pytest.approx(0.0, abs=1e-7)
-    assert omega[-1] == pytest.approx(346.8, rel=1e-8)
+    assert omega[-1] == pytest.approx(346.8, rel=5e-8)  # 0.98^800 of the way, 7e-6 rad/s, is left
 
 
 def test_numbers_behind_figure_9_settle_only_with_the_compensator(reproduced):

@@ -52,7 +52,7 @@ def test_the_recursion_ends_where_theory_says(shaped):
     assert history["robustness"][0] == pytest.approx(-0.0708320860, rel=1e-8)
     assert history["frequency_rad_s"][0] == pytest.approx(277.1029065, rel=1e-9)
     assert history["robustness"][-1] == pytest.approx(0.0, abs=1e-7)
-    assert history["frequency_rad_s"][-1] == pytest.approx(346.8, rel=1e-8)
+    assert history["frequency_rad_s"][-1] == pytest.approx(346.8, rel=5e-8)  # 0.98^800 of the way, 7e-6 rad/s, is left
     assert 0.06 < history["min_eig_modified_inertia"].min() < history["min_eig_modified_inertia"].max() < 0.07
 
 
