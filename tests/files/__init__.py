@@ -1,0 +1,1 @@
+"""Robot files: what is read from sound ones, and how unsound ones are refused."""
