@@ -84,7 +84,7 @@ FAULTS = {
         swap(STIFF, "stiffness = [3e4, 3e4]"),
         ["[base] stiffness", "2 values", "1 need"],
     ),
-    "no damping": (swap(DAMP, ""), ["[base] damping", "0 values given, 1 needed"]),
+    "no damping": (swap(DAMP, ""), ["[base] damping", "is missing. Add it"]),
     "two equilibria": (swap("equilibrium = [0.0]", "equilibrium = [0.0, 0.1]"), ["[base] equilibrium", "2 values"]),
     "three gains for two rows": (
         swap("stiffness = [1.0e5, 1.0e5]", "stiffness = [1e5, 1e5, 1e5]"),

@@ -18,6 +18,7 @@ from flexbase.dynamics.statics import gravity_stiffness, gravity_torques, static
 from flexbase.dynamics.task import task_error, task_value
 from flexbase.errors import FlexbaseWarning, InputError, SingularArm, Unreachable
 from flexbase.model.files.project import load_project
+from flexbase.model.mechanism import Mechanism
 from flexbase.model.mounted import MountedArm
 from flexbase.model.task import check_branch
 from flexbase.trace.algebra import unstack
@@ -126,9 +127,9 @@ class Pose:
 
     @cached_property
     def D(self) -> Array:
-        """Damping, shape (N, N)."""
-        D = np.zeros((self.arm.N, self.arm.N))
-        D[: self.arm.m, : self.arm.m] = self.arm.base.damping
+        """Damping of base and joint friction, shape (N, N)."""
+        D = np.diag(self.arm.mechanism.friction)
+        D[: self.arm.m, : self.arm.m] += self.arm.base.damping
         return D
 
     @cached_property
@@ -148,8 +149,13 @@ class Pose:
 
 
 def load(robot: str | Path) -> Plant:
-    """Load a bundled robot by name, or a project file by path. Raises InputError."""
-    return Plant(load_project(robot))
+    """Load a bundled robot by name, a project file, or a bare URDF or MJCF by path. Raises InputError, MissingExtra."""
+    return Plant(load_project(robot, inertia_at))
+
+
+def inertia_at(mechanism: Mechanism, q: Array) -> Array:
+    """M of a mechanism at a configuration, shape (N, N)."""
+    return np.array(mass_matrix(forward(mechanism, tuple(q.tolist()))))
 
 
 def _check_inertia(pose: Pose) -> None:

@@ -16,11 +16,11 @@ from flexbase.dynamics.spatial import (
     sum_of_forces,
     sum_of_motions,
 )
-from flexbase.trace.algebra import Scalar, Vector, scale
+from flexbase.trace.algebra import Scalar, Vector, add, mul, scale
 
 
 def inverse_dynamics(frames: Frames, velocity: Vector, acceleration: Vector, gravity: Vector = ZERO_VECTOR) -> Vector:
-    """Joint forces M q'' + h(q, q') + g(q) that produce an acceleration.  [U03 eq 1]"""
+    """Joint forces M q'' + h(q, q') + g(q) that produce an acceleration, without friction.  [U03 eq 1]"""
     v, a = ZERO_MOTION, Motion(ZERO_VECTOR, scale(-1.0, gravity))
     wrenches: list[Force] = []
     for motion, body, rate, change in zip(frames.motions, frames.bodies, velocity, acceleration, strict=True):
@@ -32,7 +32,7 @@ def inverse_dynamics(frames: Frames, velocity: Vector, acceleration: Vector, gra
     carried = None
     for i in reversed(range(len(wrenches))):
         carried = wrenches[i] if carried is None else sum_of_forces(wrenches[i], carried)
-        torques[i] = power(carried, frames.motions[i])
+        torques[i] = add(power(carried, frames.motions[i]), mul(frames.links[i].armature, acceleration[i]))
     return tuple(torques)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from flexbase.dynamics.kinematics import Frames
 from flexbase.dynamics.spatial import momentum, power, sum_of_inertias
-from flexbase.trace.algebra import Matrix, Scalar
+from flexbase.trace.algebra import Matrix, Scalar, add
 
 
 def mass_matrix(frames: Frames) -> Matrix:
@@ -18,4 +18,5 @@ def mass_matrix(frames: Frames) -> Matrix:
         carried = momentum(composite, frames.motions[i])
         for j in range(i + 1):
             M[i][j] = M[j][i] = power(carried, frames.motions[j])
+        M[i][i] = add(M[i][i], frames.links[i].armature)
     return tuple(map(tuple, M))

@@ -26,8 +26,8 @@ def arm_angles(
 ) -> tuple[Array | None, float]:
     """Arm joints that bring the tip to a target while the base rests, and the smallest tip error that was found.
 
-    The branch is the sign of the elbow, the arm's second joint (no choice below two joints). Of several solutions the
-    one nearest to `near` (zero if not given) is taken. None where no start ends at the target.
+    The branch is the sign of the elbow (`elbow_of`). Of several solutions the one nearest to `near` is taken; without
+    it the one nearest to zero, or for redundant arms the best conditioned. None where no start arrives.
     """
     planar = two_joint_arm(mechanism, task, base_rest)
     if planar is not None:
@@ -41,8 +41,22 @@ def arm_angles(
     good = (errors <= TOLERANCE * reach(mechanism)) & _on_branch(mechanism, len(base_rest), found, branch)
     if not good.any():
         return None, float(errors.min())
+    if near is None and found.shape[1] > task.k:
+        return found[good][np.argmax(_conditioning(mechanism, task, base_rest, found[good]))], 0.0
     centre = np.zeros(found.shape[1]) if near is None else near
     return found[good][np.argmin(np.linalg.norm(found[good] - centre, axis=1))], 0.0
+
+
+def elbow_of(n: int) -> int | None:
+    """Which arm joint is the elbow: the fourth of seven, the third of six, the second of fewer, none of one."""
+    return None if n < 2 else {6: 2, 7: 3}.get(n, 1)
+
+
+def _conditioning(mechanism: Mechanism, task: Task, base_rest: Array, joints: Array) -> Array:
+    """Smallest over largest singular value of Jv, for each row of joints."""
+    frames = forward(mechanism, (*map(float, base_rest), *joints.T))
+    values = np.linalg.svd(stack(task_jacobian(frames, task.indices))[..., len(base_rest) :], compute_uv=False)
+    return np.asarray(values[..., -1] / values[..., 0])
 
 
 def arm_angles_of_many(
@@ -68,10 +82,11 @@ def arm_angles_of_many(
 
 
 def _on_branch(mechanism: Mechanism, m: int, joints: Array, branch: str) -> NDArray[np.bool_]:
-    """Whether the elbow, a revolute second arm joint, is bent to the asked side; True where there is none."""
-    if joints.shape[1] < 2 or mechanism.joint_types[m + 1] != "revolute":
+    """Whether the elbow is bent to the asked side; True where there is none, or it slides."""
+    elbow = elbow_of(joints.shape[1])
+    if elbow is None or mechanism.joint_types[m + elbow] != "revolute":
         return np.ones(len(joints), dtype=bool)
-    return np.array((np.sin(joints[:, 1]) >= 0.0) == (branch == "+"))
+    return np.array((np.sin(joints[:, elbow]) >= 0.0) == (branch == "+"))
 
 
 def newton(mechanism: Mechanism, task: Task, base_rest: Array, starts: Array, target: Array) -> tuple[Array, Array]:
@@ -111,8 +126,9 @@ def _starts(mechanism: Mechanism, m: int, branch: str, near: Array | None) -> Ar
     unit = qmc.Halton(n, scramble=False).random(STARTS)
     span = np.array([np.pi if kind == "revolute" else reach(mechanism) for kind in mechanism.joint_types[m:]])
     starts = (2.0 * unit - 1.0) * span
-    if n > 1:
-        starts[:, 1] = np.abs(starts[:, 1]) * (1.0 if branch == "+" else -1.0)
+    elbow = elbow_of(n)
+    if elbow is not None:
+        starts[:, elbow] = np.abs(starts[:, elbow]) * (1.0 if branch == "+" else -1.0)
     if near is not None:
         starts[0] = near
     return np.asarray(starts)

@@ -23,9 +23,9 @@ def close_loop(system: SecondOrder, gains: Gains) -> SecondOrder:
 def abscissa(system: SecondOrder, drifting: int = 0) -> float:
     """Real part of the rightmost pole [1/s]; negative when the system settles.
 
-    drifting : motions that nothing controls; their two poles each, at 0, are left out
+    drifting : poles at 0, of motions that nothing controls, that are left out
     """
-    return _rightmost(system.state_space().A, 2 * drifting)
+    return _rightmost(system.state_space().A, drifting)
 
 
 def lagged_abscissa(system: SecondOrder, lagged: Array, lag: float, drifting: int = 0) -> float:
@@ -43,7 +43,7 @@ def lagged_abscissa(system: SecondOrder, lagged: Array, lag: float, drifting: in
             (lagged @ acceleration - np.hstack([zero, zero, eye])) / lag,
         ]
     )
-    return _rightmost(A, 2 * drifting)
+    return _rightmost(A, drifting)
 
 
 def _rightmost(A: Array, left_out: int) -> float:

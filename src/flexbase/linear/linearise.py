@@ -52,8 +52,18 @@ def gain_of(pose: Pose, compensator: HasGain | None) -> Array:
 
 
 def has_arm_stiffness(pose: Pose) -> bool:
-    """Whether gravity stiffens the arm's own motions, so that the reduced form is not exact."""
+    """Whether gravity stiffens the arm's own motions."""
     return bool(np.abs(pose.K[pose.arm.m :]).max() > NEGLIGIBLE * np.abs(pose.K).max(initial=0.0))
+
+
+def has_arm_friction(pose: Pose) -> bool:
+    """Whether the arm's joints have viscous friction."""
+    return bool(pose.D[pose.arm.m :].any())
+
+
+def is_reducible(pose: Pose) -> bool:
+    """Whether stiffness and damping act on the base alone, so that the reduced form is exact.  [theory §3]"""
+    return not (has_arm_stiffness(pose) or has_arm_friction(pose))
 
 
 def modified_inertia(pose: Pose, E: Array) -> Array:

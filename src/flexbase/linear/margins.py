@@ -9,7 +9,7 @@ from scipy.optimize import brentq, minimize
 
 from flexbase.checks import Array
 from flexbase.linear.closed_loop import abscissa, close_loop, lagged_abscissa
-from flexbase.linear.linearise import has_arm_stiffness, linearise, modified_inertia
+from flexbase.linear.linearise import has_arm_friction, has_arm_stiffness, linearise, modified_inertia
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
 
@@ -92,5 +92,6 @@ def lag_margin(pose: Pose, E: Array, gains: Gains) -> float | None:
 
 
 def _drifting(pose: Pose) -> int:
-    """Motions of a redundant arm that neither the task nor gravity holds."""
-    return 0 if has_arm_stiffness(pose) else pose.arm.n - pose.arm.k
+    """Poles at 0 of the motions of a redundant arm that neither the task nor gravity holds."""
+    free = 0 if has_arm_stiffness(pose) else pose.arm.n - pose.arm.k
+    return free if has_arm_friction(pose) else 2 * free

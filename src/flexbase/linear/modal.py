@@ -15,7 +15,7 @@ from flexbase.linear.linearise import (
     ReducedArrays,
     check_definite_inertia,
     gain_of,
-    has_arm_stiffness,
+    is_reducible,
     linearise,
     reduced_arrays,
 )
@@ -29,7 +29,7 @@ ONE_JOINT = "One base joint: exact, at any damping."
 UNDAMPED = "Undamped base: exact in the limit of vanishing damping."
 PROPORTIONAL = "Proportional damping: positive residues are sufficient, not necessary."
 INDICATOR = "Non-proportional damping: the residues are an indicator only, neither necessary nor sufficient."
-GRAVITY = "Gravity stiffness couples arm and base: the residues of the base modes are an indicator only."
+COUPLED = "Gravity stiffness or joint friction couples arm and base: the residues are an indicator only."
 RIGID = "Rigid base: no vibration mode."
 
 
@@ -119,14 +119,14 @@ class Modes:
 def modes(pose: Pose, compensator: HasGain | None = None) -> Modes:
     """Vibration modes of a pose, with or without a compensator.
 
-    Assumes distinct poles. Where stiffness acts on the base alone, the reduced form of theory §3 is exact and is used;
-    where gravity stiffens the arm too, the full 2N state space, and the modes are the m in which the base stores most
-    strain energy.
+    Assumes distinct poles. Where stiffness and damping act on the base alone, the reduced form of theory §3 is exact
+    and is used; where gravity or friction acts on the arm too, the full 2N state space, and the modes are the m of the
+    stiffest base springs.
     Warns where a mode is overdamped. Raises InputError if M - E is not positive definite.
     """
     E = gain_of(pose, compensator)
     check_definite_inertia(pose, E)
-    analyse = _with_arm_stiffness if has_arm_stiffness(pose) else _reduced
+    analyse = _reduced if is_reducible(pose) else _full
     found, rigid_mode, caveat = analyse(pose, E, compensator)
     overdamped = [mode.label for mode in found if mode.damping_ratio >= 1.0]
     if overdamped:
@@ -154,7 +154,7 @@ def _reduced(pose: Pose, E: Array, _: HasGain | None) -> tuple[list[Mode], Array
     return found, reduced.R0, INDICATOR
 
 
-def _with_arm_stiffness(pose: Pose, E: Array, compensator: HasGain | None) -> tuple[list[Mode], Array, str]:
+def _full(pose: Pose, E: Array, compensator: HasGain | None) -> tuple[list[Mode], Array, str]:
     """Full state space: damping and stiffness no longer act on the base alone."""
     system, m = linearise(pose, compensator), pose.arm.m
     if m == 0:
@@ -167,7 +167,7 @@ def _with_arm_stiffness(pose: Pose, E: Array, compensator: HasGain | None) -> tu
         system.M, system.B
     )  # of P(s) s^2 as s grows: rigid and vibration modes together
     vibration = sum((mode.residue - 2.0 * mode.damping_ratio * mode.frequency * mode.residue_s for mode in found), 0.0)
-    return found, leading - vibration, GRAVITY
+    return found, leading - vibration, COUPLED
 
 
 def _real_mode(pose: Pose, reduced: ReducedArrays, real: RealShapes, index: int) -> Mode:

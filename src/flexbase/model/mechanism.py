@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -11,6 +11,10 @@ import numpy as np
 from flexbase.checks import Array
 
 JOINT_TYPES = ("revolute", "prismatic")
+
+
+def _none() -> Array:
+    return np.zeros(0)
 
 
 class Link(NamedTuple):
@@ -23,6 +27,7 @@ class Link(NamedTuple):
     mass: float
     com: tuple[float, ...]
     inertia: tuple[tuple[float, ...], ...]
+    armature: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +45,8 @@ class Mechanism:
     com : centre of mass in the body frame, shape (N, 3) [m]
     inertia : about the centre of mass, body axes, shape (N, 3, 3) [kg m^2]
     tool_rotation, tool_position : the tool frame in the last body's frame, shapes (3, 3) and (3,)
+    armature : rotor inertia reflected to each joint, shape (N,) [kg m^2 or kg]; zero if left out
+    friction : viscous friction of each joint, shape (N,) [N m s/rad or N s/m]; zero if left out
     """
 
     joint_names: tuple[str, ...]
@@ -52,6 +59,13 @@ class Mechanism:
     inertia: Array
     tool_rotation: Array
     tool_position: Array
+    armature: Array = field(default_factory=_none)
+    friction: Array = field(default_factory=_none)
+
+    def __post_init__(self) -> None:
+        for name in ("armature", "friction"):
+            if not getattr(self, name).size:
+                object.__setattr__(self, name, np.zeros(self.N))
 
     @property
     def N(self) -> int:
@@ -70,6 +84,7 @@ class Mechanism:
                 float(self.mass[i]),
                 tuple(self.com[i].tolist()),
                 tuple(map(tuple, self.inertia[i].tolist())),
+                float(self.armature[i]),
             )
             for i in range(self.N)
         )

@@ -26,7 +26,7 @@ def accelerations(pose: Pose, frames: Frames, q: Array, rates: Array, torque: Ar
     M = inertia_under(frames, E)
     spring = (pose.equilibrium - q[..., : arm.m]) @ base.stiffness - rates[..., : arm.m] @ base.damping
     bias = stack(bias_forces(frames, unstack(rates, 1), arm.gravity.tolist()))
-    force = np.concatenate([spring, torque], axis=-1) - bias
+    force = np.concatenate([spring, torque], axis=-1) - bias - arm.mechanism.friction * rates
     return np.asarray(np.linalg.solve(M, force[..., None])[..., 0])
 
 

@@ -82,18 +82,52 @@ class PayloadTable(Table):
 
 
 class RobotTable(Table):
-    """The chain, base joints first."""
+    """The chain, base joints first: planar links written here, or a robot file."""
 
-    links: list[LinkTable] = Field(min_length=1, description="planar links, base first")
+    links: list[LinkTable] | None = Field(None, min_length=1, description="planar links, base first")
+    file: str | None = Field(None, min_length=1, description="URDF or MJCF beside this file or below")
+    tool: str | None = Field(None, min_length=1, description="frame of the file whose motion is the task")
     payload: PayloadTable | None = None
+    friction: Numbers | None = Field(None, description="viscous, one for each arm joint [N m s/rad or N s/m]")
+    file_friction: bool = Field(False, description="take viscous joint friction from the robot file")
+    rotor_inertia: Numbers | None = Field(None, description="reflected, one for each arm joint [kg m^2 or kg]")
+
+
+class JointTable(Table):
+    """A passive joint that the robot file does not have."""
+
+    name: str = Field(min_length=1)
+    type: Literal["revolute", "prismatic"] = Field(description="kind of joint")
+    axis: Numbers = Field(description="direction, 3 numbers, in the frame that the joints before it have moved")
+
+
+class BodyTable(Table):
+    """The body that the added base joints carry, in the frame of the last one."""
+
+    mass: float = Field(gt=0, le=LARGEST, description="[kg]")
+    com: Numbers = Field([0.0, 0.0, 0.0], description="centre of mass [m], 3 numbers")
+    inertia: Numbers = Field(description="about its centre of mass [kg m^2]: xx yy zz, or xx yy zz xy xz yz")
+
+
+class MountTable(Table):
+    """Where the arm's root sits on that body."""
+
+    xyz: Numbers = Field([0.0, 0.0, 0.0], description="[m]")
+    rpy: Numbers = Field([0.0, 0.0, 0.0], description="turns about the fixed x, then y, then z axis [rad]")
 
 
 class BaseTable(Table):
-    """The passive joints: the first ones of the chain."""
+    """The passive joints: the first ones of the chain, or joints added below it."""
 
-    joints: list[str] = Field(description="names of the passive joints, in chain order")
-    stiffness: NumbersOrRows = Field([], description="one for each base joint, or a symmetric positive definite matrix")
-    damping: NumbersOrRows = Field([], description="one for each base joint, or a positive semidefinite matrix")
+    joints: list[str] = Field([], description="names of the passive joints of the robot, in chain order")
+    joint: list[JointTable] = Field([], max_length=6, description="joints added before the robot's own")
+    body: BodyTable | None = None
+    mount: MountTable | None = None
+    stiffness: NumbersOrRows | None = Field(None, description="one a joint, or a symmetric positive definite matrix")
+    damping: NumbersOrRows | None = Field(None, description="one a joint, or a positive semidefinite matrix")
+    frequency: Numbers | None = Field(None, description="instead of stiffness: of each joint alone, arm locked [rad/s]")
+    damping_ratio: Numbers | None = Field(None, description="instead of damping: of each joint alone, arm locked")
+    reference: Numbers | None = Field(None, description="arm joints at which the frequencies hold; zero if left out")
     equilibrium: Numbers | None = Field(None, description="where the springs rest [m or rad]; zero if left out")
 
 
