@@ -33,6 +33,8 @@ SYSTEMS = {
     "redundant": lambda: random_pose(4, 1, 3, 2),
 }
 
+FREQUENCIES_FREE = {"convex", "bounded"}  # methods that aim at positive realness alone unless asked for more
+
 
 @cache
 def designed(method, system):
@@ -104,12 +106,13 @@ def check_facts(pose, E, certificate):
 
 def check_targets(pose, E, compensator):
     """What the certificate promises beyond facts: the first mode aligned and at its target, as far as its residual."""
-    before, frequency_before, _ = independent_modes(pose, np.zeros_like(E))
+    _, frequency_before, residues_before = independent_modes(pose, np.zeros_like(E))
     w, frequencies, residues = independent_modes(pose, E)
-    scale = np.maximum(np.abs(before), np.array([np.abs(R).max() for R in residues]))
+    scale = np.maximum(np.linalg.norm(residues_before, axis=(1, 2)), np.linalg.norm(residues, axis=(1, 2)))
     slack = 1e-6 + compensator.certificate.target_residual
     assert np.all(w > -2.0 * slack * scale)
-    assert np.all(frequencies > 1.01 * frequency_before)  # by default all of them rise
+    if compensator.method not in FREQUENCIES_FREE:
+        assert np.all(frequencies > 1.01 * frequency_before)  # by default all of them rise
 
 
 def test_every_method_and_every_system_is_used():

@@ -125,9 +125,10 @@ def test_design_under_gravity_warns_and_its_certificate_includes_gravity(method)
     Its frequency equals a pole of the full system under gravity, and differs from the one without (the control).
     """
     pose = planar([0.2, 0.3, 0.25], gravity=(0.0, -2000.0, 0.0), stiffness=1e5).at([0.4, 0.9])
-    options = {"natural_frequency": 1.3 * flexbase.modes(pose)[0].frequency}
-    with pytest.warns(FlexbaseWarning, match="gravity"):
+    options = {"natural_frequency": 1.3 * flexbase.modes(pose)[0].frequency} if method != "bounded" else {}
+    with pytest.warns(FlexbaseWarning) as said:
         compensator = flexbase.design(pose, method, **options)
+    assert any("gravity" in str(warning.message) for warning in said)
     claimed = compensator.certificate.frequency_after_rad_s[0]
     system = FullSystem(pose, compensator.E)
     assert np.abs(np.abs(system.poles()) / claimed - 1.0).min() < 1e-9

@@ -9,7 +9,7 @@ import numpy as np
 from flexbase.checks import Array, check_symmetric, finite_array
 from flexbase.control.compensator import Certificate, Compensator
 from flexbase.errors import FlexbaseWarning
-from flexbase.linear.linearise import Gain, has_arm_stiffness, modified_inertia
+from flexbase.linear.linearise import Gain, is_reducible, modified_inertia
 from flexbase.linear.margins import (
     algebraic_loop_radius,
     algebraic_loop_radius_per_joint,
@@ -93,8 +93,10 @@ def _cautions_of_loop(rho: float, mu: float) -> tuple[str, ...]:
 
 def _cautions_of_arm(pose: Pose) -> tuple[str, ...]:
     arm, cautions = pose.arm, []
-    if has_arm_stiffness(pose):
-        cautions.append("gravity stiffness is left out of the design equations; the certificate includes it.")
+    if not is_reducible(pose):
+        cautions.append(
+            "gravity stiffness and joint friction are left out of the design equations; the certificate includes them."
+        )
     if arm.n > arm.k:
         cautions.append(
             f"redundant arm: {arm.n - arm.k} null-space motion{'s' * (arm.n - arm.k > 1)} without control, "

@@ -32,7 +32,7 @@ def recursive(
     """
     if pose.arm.m > 1:
         raise InputError(
-            f"recursive: {pose.arm.m} base joints, but this method shapes one; task-priority shapes several."
+            f"recursive: {pose.arm.m} base joints, but this method shapes one; convex and task-priority shape several."
         )
     targets = None
     if natural_frequency is not None:

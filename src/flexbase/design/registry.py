@@ -33,11 +33,14 @@ def method(name: str, purpose: str) -> Callable[[Callable[..., Compensator]], Ca
     return register
 
 
-def design(pose: Pose, method: str = "exact", **options: Any) -> Compensator:
+def design(pose: Pose, method: str | None = None, **options: Any) -> Compensator:
     """Design a compensator at a pose by a registered method; see `METHODS` and each method's own options.
 
+    method : if left out, "exact" for one base joint and as many task rows as arm joints, "convex" for all others
     Raises Infeasible if the answer is no, InputError if the method or an option does not fit.
     """
+    if method is None:
+        method = "exact" if pose.arm.m <= 1 and pose.arm.k == pose.arm.n else "convex"
     run = choose("method", method, METHODS).run
     known = [name for name in inspect.signature(run).parameters if name != "pose"]
     for option in options:

@@ -1,0 +1,59 @@
+"""Bounded design for several base joints: the least passivity shortage among implementable gains.  [theory §7]"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexbase.checks import Array
+from flexbase.control.compensator import Compensator
+from flexbase.design.certificate import certify
+from flexbase.design.descent import descend, shortage_and_slope
+from flexbase.design.implementable import RADIUS, BoundedGain, checked_radius
+from flexbase.design.least_misalignment import MARGIN, least_misalignment
+from flexbase.design.mobility_program import MobilityProgram
+from flexbase.design.registry import method
+from flexbase.design.shortage import cautions_of_shortage, target_residual
+from flexbase.errors import Infeasible, InputError, MissingExtra
+from flexbase.model.task import Gains
+from flexbase.plant import Pose
+
+SPREAD = 0.5  # of the random start's entries
+NOTHING = 1e-10  # shortage relative to no E that counts as none: the smaller gain then wins
+
+
+@method("bounded", "any base, arm and task: least passivity shortage by descent, the radius bounded by construction")
+def bounded(
+    pose: Pose,
+    *,
+    radius: float = RADIUS,
+    seed: int = 0,
+    gains: Gains | None = None,
+) -> Compensator:
+    """Least -sum_i w_i / (4 zeta_i omega_i) over all gains with rho(Ms^-1 E) < radius.  [theory §7]
+
+    Assumes a compliant base; natural frequencies are not aimed at; leaves gravity stiffness out of the equations. BFGS
+    with exact slopes over a free symmetric matrix, from three starts: no gain, a random one (`seed`), and the
+    least-misaligned one where the extra "convex" is installed. An undamped base is designed as if it had 1 % damping.
+    The certificate's `target_residual` is what is left missing, in a mode or in the whole response, relative.
+    """
+    if pose.arm.m == 0:
+        raise InputError("bounded: the base is rigid, so there is no mode to shape.")
+    g = checked_radius(radius)
+    none = np.zeros((pose.arm.n, pose.arm.n))
+    if shortage_and_slope(pose, none)[0] == 0.0:
+        return certify(pose, "bounded", none, target_residual=0.0, gains=gains)
+    random = SPREAD * np.random.default_rng(seed).standard_normal(none.shape)
+    starts = [none, BoundedGain(pose, g).at(0.5 * (random + random.T))[0], *_convex_start(pose, g)]
+    found = [descend(pose, g, start) for start in starts]
+    least = min(value for value, _ in found)
+    E = min((E for value, E in found if value <= least + NOTHING), key=lambda E: float(np.linalg.norm(E)))
+    missing, cautions = target_residual(pose, E), cautions_of_shortage(pose, E)
+    return certify(pose, "bounded", E, target_residual=missing, gains=gains, cautions=cautions)
+
+
+def _convex_start(pose: Pose, radius: float) -> list[Array]:
+    """The least-misaligned gain; none without the extra or where its solver fails."""
+    try:
+        return [least_misalignment(MobilityProgram(pose, radius), MARGIN)]
+    except (MissingExtra, Infeasible):
+        return []

@@ -1,0 +1,146 @@
+"""Convex design for any number of base joints, arm joints and task rows, always implementable.  [theory §7, §8]
+
+In the arm's mobility Y = (Mhat - E)^-1 the input shape V = Jv Y Map and the inertia S = Mpp - Mpa Y Map are affine.
+V = beta Jp with one beta outside (0, 1) makes the plant positive real at any damping of the base. (Y, beta) are jointly
+affine, so beta <= 0 and beta >= 1 are two semidefinite programs; the bound on the algebraic loop is a box on Y.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexbase.checks import Array, positive_number
+from flexbase.control.compensator import Compensator
+from flexbase.design.certificate import certify
+from flexbase.design.descent import descend, shortage_and_slope
+from flexbase.design.implementable import RADIUS, checked_radius
+from flexbase.design.least_misalignment import MARGIN, least_misalignment
+from flexbase.design.mobility_program import SIDES, MobilityProgram, Solution
+from flexbase.design.registry import method
+from flexbase.design.shortage import cautions_of_shortage, target_residual
+from flexbase.errors import Infeasible, InputError
+from flexbase.linear.modal import modes
+from flexbase.model.task import Gains
+from flexbase.plant import Pose
+
+OBJECTIVES = ("aligned", "least-misaligned")
+SHARE = 0.5  # of the largest reachable distance, where MARGIN itself is not reachable
+SOLVABLE = 1e-9  # relative residual of V = beta Jp up to which the equation counts as solvable
+RADIUS_STEPS = 12  # bisections for the smallest radius that a refusal names
+
+
+@method("convex", "any base, arm and task: semidefinite program, with a bound on the algebraic loop's radius")
+def convex(
+    pose: Pose,
+    *,
+    natural_frequency: float | None = None,
+    highest_frequency: float | None = None,
+    radius: float = RADIUS,
+    margin: float = MARGIN,
+    objective: str | None = None,
+    gains: Gains | None = None,
+) -> Compensator:
+    """Least change of the arm's mobility that makes the plant positive real, under rho(Ms^-1 E) <= radius.  [theory §7]
+
+    Assumes a compliant base; leaves gravity stiffness out of the equations. Needs the extra "convex".
+
+    natural_frequency, highest_frequency : bounds on all natural frequencies, from below (the slowest) and above
+        [rad/s]; equal ones fix the frequency of a one-joint base
+    radius : bound on the algebraic loop's radius, below 1
+    margin : distance of beta from (0, 1); half the largest that exists where that is less
+    objective : "aligned", V = beta Jp, which needs k + m <= n + 1 in general: positive real at any damping; or
+        "least-misaligned", each mode with a beta of its own, as near as the bounds let it: positive real where the
+        certificate says so. Left out: aligned if that is feasible, least-misaligned if not
+    Raises Infeasible, naming what binds: the frequencies, and for "aligned" the radius (with the smallest that would
+    do) or the equation itself.
+    """
+    if pose.arm.m == 0:
+        raise InputError("convex: the base is rigid, so there is no mode to shape.")
+    if objective not in (None, *OBJECTIVES):
+        raise InputError(f'objective: "{objective}" is unknown. Give one of {", ".join(OBJECTIVES)}.')
+    if not 0.0 <= margin < np.inf:
+        raise InputError(f"margin: {margin!r} must be 0 or more. {MARGIN:g} is the usual choice.")
+    program = MobilityProgram(pose, checked_radius(radius), *_bounds(pose.arm.m, natural_frequency, highest_frequency))
+    misfit = program.misfit()
+    solvable, still = misfit <= SOLVABLE, misfit == np.inf
+    if objective == "aligned" and not solvable and not still:
+        raise Infeasible(
+            f"V = beta Jp has no solution for {pose.arm.m} base joints, {pose.arm.n} arm joints and {pose.arm.k} task "
+            f"rows (relative misfit {misfit:.2g}). Ask for the objective least-misaligned, or fewer rows."
+        )
+    _check_frequencies(program)
+    aligned = _aligned(program, margin) if solvable and objective != "least-misaligned" else None
+    if aligned is not None:
+        E = program.gain(aligned)
+        return certify(pose, "convex", E, target_residual=program.residual(E), gains=gains)
+    if objective == "aligned" and not still:
+        raise Infeasible(_what_binds(program))
+    E = _least_misaligned(program, margin)
+    missing, cautions = target_residual(pose, E), cautions_of_shortage(pose, E)
+    return certify(pose, "convex", E, target_residual=missing, gains=gains, cautions=cautions)
+
+
+def _bounds(m: int, lowest: float | None, highest: float | None) -> tuple[float | None, float | None]:
+    low = None if lowest is None else positive_number("natural frequency", lowest, "rad/s")
+    high = None if highest is None else positive_number("highest frequency", highest, "rad/s")
+    if low is not None and high is not None and low > high:
+        raise InputError(f"highest frequency: {high:g} rad/s is below the natural frequency, {low:g} rad/s.")
+    if low is not None and low == high and m > 1:
+        raise InputError(f"highest frequency: {m} modes cannot all be at {low:g} rad/s. Give a higher one.")
+    return low, high
+
+
+def _aligned(program: MobilityProgram, margin: float) -> Solution | None:
+    """The smaller change of the two sides; on each, the margin or half of what is reachable. None where neither is."""
+    found = []
+    for side in SIDES:
+        farthest = program.farthest(side)
+        if farthest is not None:
+            found.append(program.least_change(side, min(margin, SHARE * farthest)))
+    return min((one for one in found if one is not None), key=lambda one: one.value, default=None)
+
+
+def _least_misaligned(program: MobilityProgram, margin: float) -> Array:
+    """Each mode near a beta of its own; then, where the frequencies are free, downhill from there and from E = 0."""
+    pose = program.pose
+    none = np.zeros((pose.arm.n, pose.arm.n))
+    if program.bounded:
+        return least_misalignment(program, margin)
+    if shortage_and_slope(pose, none)[0] == 0.0:  # a base that does not move the tip, for one
+        return none
+    starts = (least_misalignment(program, margin), none)
+    return min((descend(pose, program.radius, start) for start in starts), key=lambda found: found[0])[1]
+
+
+def _what_binds(program: MobilityProgram) -> str:
+    """Why V = beta Jp fails inside the bounds. The frequencies by themselves were checked before."""
+    g, pose = program.radius, program.pose
+    if program.bounded and _aligns(MobilityProgram(pose, g)):
+        frequencies = ", ".join(f"{mode.frequency:.4g}" for mode in modes(pose).modes)
+        return (
+            f"the natural frequencies bind: at radius {g:g} the modes can be aligned, and the frequencies can be had, "
+            f"but not both (without E they are {frequencies} rad/s). Ask for others, or for a larger radius."
+        )
+    mend = "Choose another pose, or ask for the objective least-misaligned."
+    low, high = g, 1.0 - 1e-6
+    if not _aligns(MobilityProgram(pose, high)):
+        return f"no gain with an algebraic-loop radius below 1 aligns the modes here. {mend}"
+    for _ in range(RADIUS_STEPS):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if _aligns(MobilityProgram(pose, middle)) else (middle, high)
+    return f"the radius binds: gains that align the modes here have {high:.4f} or more, {g:g} is asked. {mend}"
+
+
+def _aligns(program: MobilityProgram) -> bool:
+    return any(program.farthest(side) is not None for side in SIDES)
+
+
+def _check_frequencies(program: MobilityProgram) -> None:
+    """The bounds on the frequencies, without any alignment. Raises Infeasible with what is reachable."""
+    if not program.bounded or program.reaches_frequencies():
+        return
+    slowest, fastest = program.reachable_frequencies()
+    raise Infeasible(
+        f"the natural frequencies bind: with radius {program.radius:g} the slowest mode cannot rise above "
+        f"{slowest:.4f} rad/s, nor the fastest fall below {fastest:.4f}. Ask for others, or for a larger radius."
+    )
