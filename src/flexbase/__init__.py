@@ -21,6 +21,7 @@ from flexbase.measures.manipulability import Ellipsoid, Manipulability, manipula
 from flexbase.model.task import Gains
 from flexbase.plant import Plant, Pose, load
 from flexbase.simulate import Run, simulate
+from flexbase.simulate.mjcf import to_mjcf
 from flexbase.sweep import Chart, sweep
 
 __version__ = "0.1.0"
@@ -57,6 +58,7 @@ __all__ = [
     "plot",
     "simulate",
     "sweep",
+    "to_mjcf",
 ]
 
 

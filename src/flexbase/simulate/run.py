@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,31 +12,26 @@ from scipy.integrate import DOP853
 from flexbase.checks import Array, choose
 from flexbase.control.joint_tracking import BANDWIDTH, JointTracking
 from flexbase.control.measured import Measured
+from flexbase.control.null_space import Law, Sum, null_space_damping
 from flexbase.control.task_pd import TaskPD
 from flexbase.control.trajectories import LAWS, JointPath
 from flexbase.dynamics.kinematics import Frames, forward, task_jacobian
 from flexbase.dynamics.task import task_error
-from flexbase.errors import InputError
+from flexbase.errors import FlexbaseWarning, Infeasible, InputError
 from flexbase.linear.linearise import HasGain, check_definite_inertia, gain_of
 from flexbase.linear.margins import closed_loop_abscissa
 from flexbase.model.task import Gains, checked_gains
 from flexbase.plant import Plant, Pose
-from flexbase.simulate.builtin import accelerations, keeps_inertia
+from flexbase.simulate.builtin import keeps_inertia
+from flexbase.simulate.engines import ENGINES, Accelerations
 from flexbase.simulate.result import Run
-from flexbase.trace.algebra import Vector, matvec, stack, unstack
+from flexbase.trace.algebra import matvec, stack, unstack
 
 RELATIVE, ABSOLUTE = 1e-8, 1e-10  # of the integrator, a step
 FASTEST = 1e3  # rad/s or m/s of a joint: beyond, the motion has diverged
 LARGEST = 1_000_000  # samples of a run
+SELF_MOTION = 20.0  # rad/s of a redundant arm's self-motion: below the base, so that it hardly drives it
 WHEN = ("settle", "always")
-
-
-class Law(Protocol):
-    """A control law: torques from what is measured."""
-
-    def torque(self, seen: Measured) -> Vector:
-        """Arm torques, n scalars (or batches)."""
-        ...
 
 
 def simulate(
@@ -52,6 +47,8 @@ def simulate(
     compensate: str = "settle",
     bandwidth: float = BANDWIDTH,
     interval: float = 2e-4,
+    self_motion: float = SELF_MOTION,
+    engine: str = "builtin",
 ) -> Run:
     """Drive from rest at `start` to `goal`, each a pose or a tip target.
 
@@ -59,11 +56,24 @@ def simulate(
     to `end` the task-space PD loop with `gains` (the project's own if left out) settles the tip. The laws see the arm
     joints and the tip error, never the base. E q_a'' is solved implicitly with the accelerations.
 
+    goal, start : of a tip target's several postures, the goal's is the nearest to the compensator's own, the start's
+        the nearest to the goal's
     compensate : "settle", the compensator acts from `switch` on (it was designed for the goal); or "always"
     interval : between samples of the result [s]
-    Raises InputError. A motion that diverges, or leaves M - E > 0, ends early and says so in `Run.stopped`.
+    self_motion : of a redundant arm: natural frequency that its null-space damping gives it [rad/s], 0 for none
+    engine : the physics that answers the laws: "builtin", or "mujoco" as an independent witness
+    Raises InputError, MissingExtra. A motion that diverges, or leaves M - E > 0, ends early; `Run.stopped` says so.
     """
-    here, there = (_as_pose(plant, pose) for pose in (start, goal))
+    m = plant.arm.m
+    designed_at = getattr(compensator, "q", None)
+    if designed_at is not None and len(designed_at) != plant.arm.N:
+        designed_at = None  # of another robot: whether its gain fits is judged below
+    there = (
+        goal if isinstance(goal, Pose) else plant.at_tip(goal, near=None if designed_at is None else designed_at[m:])
+    )
+    here = start if isinstance(start, Pose) else plant.at_tip(start, near=there.q[m:])
+    if not here.plant.name == there.plant.name == plant.name:
+        raise InputError("simulate: the poses belong to another plant. Make them with this plant's at or at_tip.")
     gains = plant.arm.gains if gains is None else checked_gains(gains, plant.arm.k)
     if gains is None:
         raise InputError(f"{plant.name}: no task gains. Add a [control] table to the project, or give gains.")
@@ -79,16 +89,16 @@ def simulate(
     E = None if compensator is None else gain_of(there, compensator)
     if E is not None:
         check_definite_inertia(there, E)
-    m = plant.arm.m
+    physics = choose("engine", engine, ENGINES)(there)
     path = JointPath(here.q[m:], there.q[m:], switch, choose("trajectory", trajectory, LAWS))
     phases: list[tuple[Law, float, float, Array | None]] = [
         (JointTracking(there, path, bandwidth), 0.0, switch, E if compensate == "always" else None),
-        (TaskPD(there, gains), switch, end, E),
+        (_settling_law(there, gains, compensator, self_motion), switch, end, E),
     ]
     state, parts, stopped = np.concatenate([here.q, np.zeros(plant.arm.N)]), [], None
     for law, begin, finish, gain in phases:
-        times, states, stopped = _integrate(there, law, gain, begin, finish, interval, state)
-        parts.append((times, states, _torques(there, law, gain, times, states)))
+        times, states, stopped = _integrate(there, physics, law, gain, begin, finish, interval, state)
+        parts.append((times, states, _torques(there, physics, law, gain, times, states)))
         if stopped:
             break
         state = states[-1]
@@ -96,21 +106,38 @@ def simulate(
     N = plant.arm.N
     pole = closed_loop_abscissa(there, np.zeros((plant.arm.n,) * 2) if E is None else E, gains)
     error = task_error(forward(plant.arm.mechanism, tuple(states[:, :N].T)), plant.arm.task, there.tip)
-    return Run(here, there, times, states[:, :N], states[:, N:], error, torques, switch, E is not None, pole, stopped)
+    return Run(
+        here, there, times, states[:, :N], states[:, N:], error, torques, switch, E is not None, pole, stopped, engine
+    )
 
 
-def _as_pose(plant: Plant, pose: Pose | ArrayLike) -> Pose:
-    return pose if isinstance(pose, Pose) else plant.at_tip(pose)
+def _settling_law(goal: Pose, gains: Gains, compensator: HasGain | None, self_motion: float) -> Law:
+    """Task PD, and for a redundant arm the damping of its self-motion.  [theory §7]"""
+    task = TaskPD(goal, gains)
+    if goal.arm.n <= goal.arm.k or self_motion == 0.0:
+        return task
+    try:
+        return Sum(task, null_space_damping(goal, compensator, frequency=self_motion))
+    except Infeasible as fault:
+        warnings.warn(f"{fault} The consistent kind is used, without that promise.", FlexbaseWarning, stacklevel=3)
+        return Sum(task, null_space_damping(goal, compensator, frequency=self_motion, kind="consistent"))
 
 
 def _integrate(
-    goal: Pose, law: Law, E: Array | None, begin: float, finish: float, interval: float, state: Array
+    goal: Pose,
+    physics: Accelerations,
+    law: Law,
+    E: Array | None,
+    begin: float,
+    finish: float,
+    interval: float,
+    state: Array,
 ) -> tuple[Array, Array, str | None]:
     """One phase: sample times from begin to finish, states there, and why it ended early."""
     times = np.linspace(begin, finish, round((finish - begin) / interval) + 1)
     states, taken = np.empty((len(times), len(state))), 1
     states[0] = state
-    solver = DOP853(lambda t, x: _rate(goal, law, E, t, x), begin, state, finish, rtol=RELATIVE, atol=ABSOLUTE)
+    solver = DOP853(lambda t, x: _rate(goal, physics, law, E, t, x), begin, state, finish, rtol=RELATIVE, atol=ABSOLUTE)
     while (trouble := _trouble(goal, E, solver)) is None and solver.status == "running":
         solver.step()
         reached = int(np.searchsorted(times, solver.t, side="right"))
@@ -135,11 +162,11 @@ def _trouble(goal: Pose, E: Array | None, solver: DOP853) -> str | None:
     return None
 
 
-def _rate(goal: Pose, law: Law, E: Array | None, time: float, state: Array) -> Array:
+def _rate(goal: Pose, physics: Accelerations, law: Law, E: Array | None, time: float, state: Array) -> Array:
     N = goal.arm.N
     q, rates = state[:N], state[N:]
     frames, seen = _observe(goal, time, q, rates)
-    return np.concatenate([rates, accelerations(goal, frames, q, rates, stack(law.torque(seen)), E)])
+    return np.concatenate([rates, physics(frames, q, rates, stack(law.torque(seen)), E)])
 
 
 def _observe(goal: Pose, time: float | Array, q: Array, rates: Array) -> tuple[Frames, Measured]:
@@ -152,7 +179,7 @@ def _observe(goal: Pose, time: float | Array, q: Array, rates: Array) -> tuple[F
     return frames, Measured(time, joints[arm.m :], speeds[arm.m :], tip_error, tip_rate)
 
 
-def _torques(goal: Pose, law: Law, E: Array | None, times: Array, states: Array) -> Array:
+def _torques(goal: Pose, physics: Accelerations, law: Law, E: Array | None, times: Array, states: Array) -> Array:
     """All that the drives deliver at each sample: the law's torque and E q_a''."""
     N, m = goal.arm.N, goal.arm.m
     q, rates = states[:, :N], states[:, N:]
@@ -160,7 +187,7 @@ def _torques(goal: Pose, law: Law, E: Array | None, times: Array, states: Array)
     torque = stack(law.torque(seen))
     if E is None:
         return np.asarray(torque)
-    return np.asarray(torque + accelerations(goal, frames, q, rates, torque, E)[:, m:] @ E)
+    return np.asarray(torque + physics(frames, q, rates, torque, E)[:, m:] @ E)
 
 
 def _without_doubled_ends(parts: Sequence[tuple[Array, ...]]) -> list[tuple[Array, ...]]:
