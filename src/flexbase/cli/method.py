@@ -9,6 +9,7 @@ from cyclopts import Group, Parameter
 
 from flexbase.cli.options import option
 from flexbase.cli.words import Vector, number, numbers, whole
+from flexbase.design import METHODS
 from flexbase.errors import InputError
 from flexbase.plant import Plant
 
@@ -20,15 +21,25 @@ METHOD = Group("Method", sort_key=15)
 class MethodOptions:
     """How a compensator is designed."""
 
-    method: Annotated[str, Parameter(metavar="NAME", help="exact (if left out), recursive or task-priority")] = "exact"
-    natural_frequency: Annotated[
-        Vector | None, option(numbers, "W", "wanted [rad/s]; a list for task-priority, slowest mode first")
+    method: Annotated[
+        str | None, Parameter(metavar="NAME", help=f"{', '.join(METHODS)}; if left out, exact or convex, as fits")
     ] = None
-    objective: Annotated[str | None, Parameter(metavar="NAME", help="exact: least-gain or least-radius")] = None
+    natural_frequency: Annotated[
+        Vector | None,
+        option(numbers, "W", "wanted [rad/s]; convex: a lower bound; task-priority: a list, slowest first"),
+    ] = None
+    highest_frequency: Annotated[float | None, option(number, "W", "convex: upper bound of all modes [rad/s]")] = None
+    objective: Annotated[
+        str | None, Parameter(metavar="NAME", help="exact: least-gain, least-radius; convex: aligned, least-misaligned")
+    ] = None
+    radius: Annotated[float | None, option(number, "G", "convex, bounded: bound on the algebraic-loop radius, 0.9")] = (
+        None
+    )
+    margin: Annotated[float | None, option(number, "B", "convex: distance of beta from 0 and 1")] = None
     derivatives: Annotated[str | None, Parameter(metavar="NAME", help="recursions: estimated or exact")] = None
     step: Annotated[float | None, option(number, "G", "recursions: share of the way in a step, up to 1")] = None
     iterations: Annotated[int | None, option(whole, "N", "recursions: number of steps")] = None
-    seed: Annotated[int | None, option(whole, "N", "recursions: seed of the random variations")] = None
+    seed: Annotated[int | None, option(whole, "N", "recursions, bounded: seed of what is random")] = None
 
     def given(self, plant: Plant) -> dict[str, Any]:
         """The options given, under the library's names. Raises InputError on a wrong count of frequencies."""
@@ -40,7 +51,10 @@ class MethodOptions:
             frequency = self.natural_frequency[0] if count == 1 else self.natural_frequency
         asked = {
             "natural_frequency": frequency,
+            "highest_frequency": self.highest_frequency,
             "objective": self.objective,
+            "margin": self.margin,
+            "radius": self.radius,
             "derivatives": self.derivatives,
             "step": self.step,
             "iterations": self.iterations,

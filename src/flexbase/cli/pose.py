@@ -54,10 +54,10 @@ class PoseOptions:
         return None if self.joints is None else plant.at(self.joints)
 
 
-def tip_pose(plant: Plant, option: str, tip: Vector, elbow: str | None) -> Pose:
-    """The pose at a tip target; a fault names the option that asked for it. Raises InputError."""
+def tip_pose(plant: Plant, option: str, tip: Vector, elbow: str | None, near: Pose | Compensator | None = None) -> Pose:
+    """The pose at a tip target, of several the nearest to `near`; a fault names the option. Raises InputError."""
     try:
-        return plant.at_tip(tip, elbow)
+        return plant.at_tip(tip, elbow, near.q[plant.arm.m :] if near and len(near.q) == plant.arm.N else None)
     except InputError as fault:
         raise type(fault)(f"{option}: {str(fault).removeprefix('tip: ')}") from fault
 

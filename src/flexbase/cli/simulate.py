@@ -8,12 +8,13 @@ from cyclopts import App, Group, Parameter
 
 from flexbase.cli.document import document
 from flexbase.cli.gains import GainOptions
+from flexbase.cli.move import RunOptions
 from flexbase.cli.options import CompensatorFile, Json, option
 from flexbase.cli.out import Out, check_out, write_out, written
 from flexbase.cli.pose import Elbow, Robot, compensator_of, tip_pose
 from flexbase.cli.run import tables
 from flexbase.cli.show import put
-from flexbase.cli.words import Vector, number, numbers
+from flexbase.cli.words import Vector, numbers
 from flexbase.plant import load
 from flexbase.simulate import simulate as run_of
 
@@ -38,16 +39,8 @@ def simulate(
     start: Annotated[Vector, option(numbers, "X,Y", "where the tip starts [m, rad]", name="--from", group=MOVE)],
     goal: Annotated[Vector, option(numbers, "X,Y", "where it settles [m, rad]", name="--to", group=MOVE)],
     elbow: Annotated[Elbow, Parameter(group=MOVE)] = None,
-    trajectory: Annotated[
-        str, Parameter(group=MOVE, metavar="NAME", help="quintic (if left out) or trapezoidal")
-    ] = "quintic",
-    switch: Annotated[float, option(number, "S", "task-space loop takes over [s], 0.1", group=MOVE)] = 0.1,
-    end: Annotated[float, option(number, "S", "end of the run [s], 0.4", group=MOVE)] = 0.4,
-    interval: Annotated[float, option(number, "S", "between samples [s], 0.0002", group=MOVE)] = 2e-4,
     compensator: CompensatorFile = None,
-    compensate: Annotated[
-        str, Parameter(metavar="WHEN", help="settle (from the switch on, if left out) or always")
-    ] = "settle",
+    run: RunOptions = RunOptions(),  # noqa: B008
     loop: GainOptions = GainOptions(),  # noqa: B008
     out: Out = None,
     json: Json = False,
@@ -55,18 +48,16 @@ def simulate(
     """Joint tracking up to the switch, then the task-space loop, on the nonlinear model."""
     check_out(out)
     plant = load(robot)
-    here, there = tip_pose(plant, "--from", start, elbow), tip_pose(plant, "--to", goal, elbow)
+    law = compensator_of(plant, compensator)
+    there = tip_pose(plant, "--to", goal, elbow, near=law)
+    here = tip_pose(plant, "--from", start, elbow, near=there)
     found = run_of(
         plant,
         here,
         there,
-        compensator_of(plant, compensator),
+        law,
         gains=loop.gains(plant),
-        switch=switch,
-        end=end,
-        interval=interval,
-        trajectory=trajectory,
-        compensate=compensate,
+        **run.given(),
     )
     content = found.to_dict()
     write_out(out, "simulate", found, content)
