@@ -276,12 +276,13 @@ class MujocoLoop:
     def __init__(self, goal, law, E):
         self.goal, self.law, self.E = goal, law, E
         self.wanted = np.zeros(6)
-        self.wanted[list(goal.arm.task.indices)] = goal.tip
+        self.wanted[:3] = goal.frames.tool_position
 
     def measured(self, model, data):
         m, rows = self.goal.arm.m, list(self.goal.arm.task.indices)
         turned = (
-            Rotation.from_matrix(data.site("tool").xmat.reshape(3, 3)) * Rotation.from_rotvec(self.wanted[3:]).inv()
+            Rotation.from_matrix(data.site("tool").xmat.reshape(3, 3))
+            * Rotation.from_matrix(np.array(self.goal.frames.tool_rotation)).inv()
         )
         error = np.concatenate([data.site("tool").xpos - self.wanted[:3], turned.as_rotvec()])[rows]
         rate = tool_jacobian(model, data)[rows] @ data.qvel

@@ -15,7 +15,7 @@ from flexbase.dynamics.inertia import mass_matrix
 from flexbase.dynamics.inverse_kinematics import arm_angles
 from flexbase.dynamics.kinematics import Frames, forward, task_jacobian
 from flexbase.dynamics.statics import gravity_stiffness, gravity_torques, static_base
-from flexbase.dynamics.task import task_error, task_value
+from flexbase.dynamics.task import Target, target_of, task_error, task_value
 from flexbase.errors import FlexbaseWarning, InputError, SingularArm, Unreachable
 from flexbase.model.files.project import load_project
 from flexbase.model.mechanism import Mechanism
@@ -62,6 +62,7 @@ class Plant:
         """
         wanted = check_length("tip", target, self.arm.k, f"one for each task row, {' '.join(self.arm.task.rows)}")
         side = check_branch(branch or self.arm.task.branch)
+        _check_turnable(self.arm)
         centre = None if near is None else check_length("near", near, self.arm.n, "one for each arm joint")
         base = self.arm.base.equilibrium
         for _ in range(60):  # without gravity the first pass is exact; with it, the sag contracts
@@ -138,6 +139,11 @@ class Pose:
         return task_value(self.frames, self.arm.task)
 
     @cached_property
+    def target(self) -> Target:
+        """The whole tool frame, against which errors are measured."""
+        return target_of(self.frames)
+
+    @cached_property
     def holding_torque(self) -> Array:
         """Arm torques that hold the pose against gravity, shape (n,)."""
         return gravity_torques(self.arm, self.q)[self.arm.m :]
@@ -145,7 +151,7 @@ class Pose:
     def tip_error(self, q: Array) -> Array:
         """Task error of other configurations, shape (..., N), against this pose, shape (..., k)."""
         frames = forward(self.arm.mechanism, unstack(q, 1))
-        return task_error(frames, self.arm.task, self.tip)
+        return task_error(frames, self.arm.task, self.target)
 
 
 def load(robot: str | Path) -> Plant:
@@ -156,6 +162,21 @@ def load(robot: str | Path) -> Plant:
 def inertia_at(mechanism: Mechanism, q: Array) -> Array:
     """M of a mechanism at a configuration, shape (N, N)."""
     return np.array(mass_matrix(forward(mechanism, tuple(q.tolist()))))
+
+
+def _check_turnable(arm: MountedArm) -> None:
+    """Refuse tip targets whose rotation rows do not fix the tool, on an arm that turns about other axes too."""
+    rows = [row for row in arm.task.indices if row >= 3]
+    if len(rows) in (0, 3):
+        return
+    frames = forward(arm.mechanism, (*arm.base.equilibrium.tolist(), *(0.5,) * arm.n))
+    axes = np.array([motion.angular for motion in frames.motions])
+    others = [axis for axis in range(3) if axis + 3 not in rows]
+    if len(rows) == 2 or np.abs(axes[:, others]).max() > 1e-12:
+        raise InputError(
+            f"tip: the rows {' '.join(arm.task.rows)} leave the tool's rotation open, so a target does not fix it. "
+            "Give joints, or all of rx ry rz."
+        )
 
 
 def _check_inertia(pose: Pose) -> None:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from textwrap import indent
+
 from rich.console import RenderableType
 
-from flexbase.cli.digits import listed, number
+from flexbase.cli.digits import listed, matrix, number
 from flexbase.cli.show import facts, table, title, verdict
 from flexbase.control.compensator import Compensator
 
@@ -32,7 +34,7 @@ def tables(found: Compensator, inertia_unit: str) -> list[RenderableType]:
     said: list[RenderableType] = [
         title(found.robot, f"compensator, method {found.method}, at joints {listed(found.q)}"),
         "",
-        facts([(f"E [{inertia_unit}]", found.E)]),
+        *_gain(found, inertia_unit),
         table(columns, rows),
         facts(margins),
     ]
@@ -43,3 +45,10 @@ def tables(found: Compensator, inertia_unit: str) -> list[RenderableType]:
         "",
         verdict(loop < 0.0, "The task-space loop is stable here", "The task-space loop is unstable here"),
     ]
+
+
+def _gain(found: Compensator, unit: str) -> list[RenderableType]:
+    """E beside its name, or below it where it is wide."""
+    if len(found.E) <= 4:
+        return [facts([(f"E [{unit}]", found.E)])]
+    return [f"  E [{unit}], three digits; all of them with --json and --out", indent(matrix(found.E), "    "), ""]

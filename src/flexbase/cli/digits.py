@@ -23,6 +23,7 @@ def matrix(rows: Any) -> str:
     table_of_rows = [list(row) if hasattr(row, "__len__") else [row] for row in rows]
     if table_of_rows and all(len(row) == 1 for row in table_of_rows) and not hasattr(rows[0], "__len__"):
         table_of_rows = [[row[0] for row in table_of_rows]]
-    shown = [[number(float(entry)) for entry in row] for row in table_of_rows]
+    digits = 9 if len(table_of_rows[0] if table_of_rows else ()) <= 4 else 3  # wide ones within 80 columns
+    shown = [[number(float(entry), digits) for entry in row] for row in table_of_rows]
     width = max((len(entry) for row in shown for entry in row), default=0)
     return "\n".join("  ".join(entry.rjust(width) for entry in row) for row in shown)

@@ -71,9 +71,8 @@ def table(
     """
     drawn = Table(box=box.SIMPLE_HEAD, header_style=HEAD, pad_edge=False, show_edge=False)
     for index, column in enumerate(columns):
-        drawn.add_column(
-            column, justify="left" if index in words else "right", overflow="fold", max_width=widest if index else None
-        )
+        kind = {"justify": "left"} if index in words else {"justify": "right", "no_wrap": widest is None}
+        drawn.add_column(column, overflow="fold", max_width=widest if index else None, **kind)
     for row in rows:
         drawn.add_row(*row)
     return Padding(drawn, (1, 0, 1 if blank_after else 0, 2))

@@ -92,7 +92,7 @@ def load_compensator(path: str | Path) -> Compensator:
         document = json.loads(Path(path).read_text(encoding="utf-8"))
     except OSError as fault:
         raise InputError(f"{path}: cannot be read ({fault.strerror}).") from fault
-    except ValueError as fault:
+    except (ValueError, RecursionError) as fault:
         raise InputError(
             f"{path}: not valid JSON ({fault}). Give a file that `flexbase design --out` wrote."
         ) from fault

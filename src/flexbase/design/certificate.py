@@ -81,7 +81,7 @@ def _cautions_of_loop(rho: float, mu: float) -> tuple[str, ...]:
     if rho >= 1.0:
         return (
             f"algebraic-loop radius {rho:.3f} is 1 or more: any delay in the measured acceleration, however small, "
-            "destabilises this compensator. Method exact, objective least-radius, gives the smallest radius.",
+            "destabilises this compensator. Method convex bounds it; exact, least-radius, makes it smallest.",
         )
     if mu >= 1.0:
         return (
@@ -99,7 +99,7 @@ def _cautions_of_arm(pose: Pose) -> tuple[str, ...]:
         )
     if arm.n > arm.k:
         cautions.append(
-            f"redundant arm: {arm.n - arm.k} null-space motion{'s' * (arm.n - arm.k > 1)} without control, "
+            f"redundant arm: {arm.n - arm.k} self-motion{'s' * (arm.n - arm.k > 1)}, damped by a law of their own, "
             "left out of the closed loop's figures."
         )
     return tuple(cautions)

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from flexbase.checks import choose
 from flexbase.control.compensator import Compensator
 from flexbase.errors import InputError, nearest_name
+from flexbase.linear.linearise import check_pose
 from flexbase.plant import Pose
 
 
@@ -39,11 +40,22 @@ def design(pose: Pose, method: str | None = None, **options: Any) -> Compensator
     method : if left out, "exact" for one base joint and as many task rows as arm joints, "convex" for all others
     Raises Infeasible if the answer is no, InputError if the method or an option does not fit.
     """
-    if method is None:
-        method = "exact" if pose.arm.m <= 1 and pose.arm.k == pose.arm.n else "convex"
+    check_pose(pose)
+    method = _fitting(pose, options) if method is None else method
     run = choose("method", method, METHODS).run
-    known = [name for name in inspect.signature(run).parameters if name != "pose"]
+    known = _options_of(run)
     for option in options:
         if option not in known:
             raise InputError(f'method {method}: the option "{option}" is unknown. {nearest_name(option, known)}')
     return run(pose, **options)
+
+
+def _options_of(run: Callable[..., Compensator]) -> list[str]:
+    return [name for name in inspect.signature(run).parameters if name != "pose"]
+
+
+def _fitting(pose: Pose, options: dict[str, Any]) -> str:
+    """The usual method for an arm, or the first one that knows all the options given."""
+    usual = "exact" if pose.arm.m <= 1 and pose.arm.k == pose.arm.n else "convex"
+    known = (name for name in (usual, *METHODS) if set(options) <= set(_options_of(METHODS[name].run)))
+    return next(known, usual)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from flexbase.checks import Array
 from flexbase.dynamics.kinematics import forward, task_jacobian
-from flexbase.dynamics.task import task_error
+from flexbase.dynamics.task import Target, target_at, task_error
 from flexbase.dynamics.two_joint_arm import solve_two_joint_arm, two_joint_arm
 from flexbase.model.mechanism import Mechanism
 from flexbase.model.task import Task
@@ -94,7 +94,7 @@ def newton(mechanism: Mechanism, task: Task, base_rest: Array, starts: Array, ta
     m = len(base_rest)
     revolute = np.array([kind == "revolute" for kind in mechanism.joint_types[m:]])
     joints = starts.copy()
-    aim = np.broadcast_to(target, (len(starts), task.k))
+    aim = target_at(task, np.broadcast_to(target, (len(starts), task.k)))
     damping = np.full((len(starts), 1, 1), 1e-3)
     error, J = _error_and_jacobian(mechanism, task, base_rest, joints, aim)
     for _ in range(STEPS):
@@ -111,7 +111,7 @@ def newton(mechanism: Mechanism, task: Task, base_rest: Array, starts: Array, ta
 
 
 def _error_and_jacobian(
-    mechanism: Mechanism, task: Task, base_rest: Array, joints: Array, target: Array
+    mechanism: Mechanism, task: Task, base_rest: Array, joints: Array, target: Target
 ) -> tuple[Array, Array]:
     frames = forward(mechanism, (*map(float, base_rest), *joints.T))
     J = stack(task_jacobian(frames, task.indices))[..., len(base_rest) :]

@@ -1,6 +1,8 @@
-"""The task coordinates of a configuration, and the error between two of them, in batches of NumPy arrays."""
+"""The task coordinates of a configuration, and the error against a target, in batches of NumPy arrays."""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -9,6 +11,13 @@ from flexbase.checks import Array
 from flexbase.dynamics.kinematics import Frames
 from flexbase.model.task import Task
 from flexbase.trace.algebra import stack
+
+
+class Target(NamedTuple):
+    """A whole tool frame to be reached: position (..., 3) and rotation (..., 3, 3)."""
+
+    position: Array
+    rotation: Array
 
 
 def task_value(frames: Frames, task: Task) -> Array:
@@ -20,17 +29,23 @@ def task_value(frames: Frames, task: Task) -> Array:
     return np.asarray(full[..., list(task.indices)])
 
 
-def task_error(frames: Frames, task: Task, target: Array) -> Array:
-    """Tip position minus target, and log(R Rd^T) in world axes, the task's rows only, shape (..., k).
+def target_of(frames: Frames) -> Target:
+    """The tool frame of a configuration as a target."""
+    return Target(stack(frames.tool_position), stack(frames.tool_rotation))
 
-    Rotation rows that the task leaves out count as zero in the target.
-    """
-    wanted = np.zeros((*target.shape[:-1], 6))
-    wanted[..., list(task.indices)] = target
-    position = stack(frames.tool_position) - wanted[..., :3]
+
+def target_at(task: Task, values: Array) -> Target:
+    """The target with these task coordinates, shape (..., k); what the task leaves out counts as zero."""
+    full = np.zeros((*values.shape[:-1], 6))
+    full[..., list(task.indices)] = values
+    return Target(full[..., :3], Rotation.from_rotvec(full[..., 3:]).as_matrix())
+
+
+def task_error(frames: Frames, task: Task, target: Target) -> Array:
+    """Tip position minus target, and log(R Rd^T) in world axes, the task's rows only, shape (..., k)."""
+    position = stack(frames.tool_position) - target.position
     if not any(row >= 3 for row in task.indices):
         return np.asarray(position[..., list(task.indices)])
-    turned = Rotation.from_matrix(stack(frames.tool_rotation)) * Rotation.from_rotvec(wanted[..., 3:]).inv()
-    return np.asarray(
-        np.concatenate(np.broadcast_arrays(position, turned.as_rotvec()), axis=-1)[..., list(task.indices)]
-    )
+    turned = stack(frames.tool_rotation) @ np.swapaxes(target.rotation, -1, -2)
+    rotation = Rotation.from_matrix(turned).as_rotvec()
+    return np.asarray(np.concatenate(np.broadcast_arrays(position, rotation), axis=-1)[..., list(task.indices)])

@@ -40,11 +40,19 @@ class ReducedArrays(NamedTuple):
     W: Array
 
 
+def check_pose(pose: object) -> None:
+    """Raises InputError where something else stands for a pose."""
+    if not isinstance(pose, Pose):
+        raise InputError(f"pose: {type(pose).__name__} given. Make one with plant.at(joints) or plant.at_tip(target).")
+
+
 def gain_of(pose: Pose, compensator: HasGain | None) -> Array:
     """E of a compensator, or zero. Raises InputError where its size does not fit the arm."""
     n = pose.arm.n
     if compensator is None:
         return np.zeros((n, n))
+    if not hasattr(compensator, "E"):
+        raise InputError(f"compensator: {type(compensator).__name__} has no gain E. Give what `design` returned.")
     E = finite_array("compensator E", compensator.E)
     if E.shape != (n, n):
         raise InputError(f"compensator: E has shape {E.shape}, but {pose.plant.name} has {n} arm joints.")

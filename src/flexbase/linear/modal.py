@@ -14,6 +14,7 @@ from flexbase.linear.linearise import (
     HasGain,
     ReducedArrays,
     check_definite_inertia,
+    check_pose,
     gain_of,
     is_reducible,
     linearise,
@@ -29,6 +30,7 @@ ONE_JOINT = "One base joint: exact, at any damping."
 UNDAMPED = "Undamped base: exact in the limit of vanishing damping."
 PROPORTIONAL = "Proportional damping: positive residues are sufficient, not necessary."
 INDICATOR = "Non-proportional damping: the residues are an indicator only, neither necessary nor sufficient."
+ONE_BETA = "V = beta Jp with one beta outside (0, 1): positive real at any damping of the base."
 COUPLED = "Gravity stiffness or joint friction couples arm and base: the residues are an indicator only."
 RIGID = "Rigid base: no vibration mode."
 
@@ -124,6 +126,7 @@ def modes(pose: Pose, compensator: HasGain | None = None) -> Modes:
     stiffest base springs.
     Warns where a mode is overdamped. Raises InputError if M - E is not positive definite.
     """
+    check_pose(pose)
     E = gain_of(pose, compensator)
     check_definite_inertia(pose, E)
     analyse = _reduced if is_reducible(pose) else _full
@@ -134,6 +137,8 @@ def modes(pose: Pose, compensator: HasGain | None = None) -> Modes:
             f"{pose.plant.name}: overdamped base, real poles at {', '.join(overdamped)}.", FlexbaseWarning, stacklevel=2
         )
     verdict = all(_is_positive(mode) for mode in found)
+    if caveat in (PROPORTIONAL, INDICATOR) and _shares_one_beta(reduced_arrays(pose, E)):
+        verdict, caveat = True, ONE_BETA
     return Modes(pose, tuple(found), rigid_mode, verdict, caveat)
 
 
@@ -244,6 +249,17 @@ def _base_stiffness_of(pole: Pole, M: Array, base_stiffness: Array) -> float:
     base = pole.shape[: len(base_stiffness)]
     strain = np.real(np.conj(base) @ base_stiffness @ base)
     return float(strain / np.real(np.conj(pole.shape) @ M @ pole.shape))
+
+
+def _shares_one_beta(reduced: ReducedArrays) -> bool:
+    """V = beta Jp with beta <= 0 or beta >= 1, which makes the plant positive real at any damping.  [theory §7]"""
+    Jp = reduced.U + reduced.V
+    size = float(np.sum(Jp * Jp))
+    if size == 0.0:
+        return False
+    beta = float(np.sum(reduced.V * Jp)) / size
+    apart = float(np.linalg.norm(reduced.V - beta * Jp))
+    return apart <= POSITIVE_REAL * float(np.linalg.norm(Jp)) and not 0.0 < beta < 1.0
 
 
 def _is_positive(mode: Mode) -> bool:

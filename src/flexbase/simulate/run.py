@@ -30,6 +30,7 @@ from flexbase.trace.algebra import matvec, stack, unstack
 RELATIVE, ABSOLUTE = 1e-8, 1e-10  # of the integrator, a step
 FASTEST = 1e3  # rad/s or m/s of a joint: beyond, the motion has diverged
 LARGEST = 1_000_000  # samples of a run
+MOST_STEPS = 10_000  # of the integrator in a phase; the paper's run takes some 200
 SELF_MOTION = 20.0  # rad/s of a redundant arm's self-motion: below the base, so that it hardly drives it
 WHEN = ("settle", "always")
 
@@ -105,7 +106,7 @@ def simulate(
     times, states, torques = (np.concatenate(pieces) for pieces in zip(*_without_doubled_ends(parts), strict=True))
     N = plant.arm.N
     pole = closed_loop_abscissa(there, np.zeros((plant.arm.n,) * 2) if E is None else E, gains)
-    error = task_error(forward(plant.arm.mechanism, tuple(states[:, :N].T)), plant.arm.task, there.tip)
+    error = task_error(forward(plant.arm.mechanism, tuple(states[:, :N].T)), plant.arm.task, there.target)
     return Run(
         here, there, times, states[:, :N], states[:, N:], error, torques, switch, E is not None, pole, stopped, engine
     )
@@ -138,8 +139,10 @@ def _integrate(
     states, taken = np.empty((len(times), len(state))), 1
     states[0] = state
     solver = DOP853(lambda t, x: _rate(goal, physics, law, E, t, x), begin, state, finish, rtol=RELATIVE, atol=ABSOLUTE)
-    while (trouble := _trouble(goal, E, solver)) is None and solver.status == "running":
+    steps = 0
+    while (trouble := _trouble(goal, E, solver, steps)) is None and solver.status == "running":
         solver.step()
+        steps += 1
         reached = int(np.searchsorted(times, solver.t, side="right"))
         if reached > taken and solver.status != "failed":
             states[taken:reached] = solver.dense_output()(times[taken:reached]).T
@@ -150,11 +153,13 @@ def _integrate(
     return times, states, None
 
 
-def _trouble(goal: Pose, E: Array | None, solver: DOP853) -> str | None:
+def _trouble(goal: Pose, E: Array | None, solver: DOP853, steps: int) -> str | None:
     """Why the run cannot go on, or None."""
     q = solver.y[: goal.arm.N]
     if solver.status == "failed":
         return "the integrator gave up"
+    if steps > MOST_STEPS:
+        return f"the loop is too fast to follow ({MOST_STEPS} steps; lower the gains of light joints)"
     if not np.all(np.isfinite(solver.y)) or float(np.abs(solver.y[goal.arm.N :]).max()) > FASTEST:
         return "the motion diverged"
     if not keeps_inertia(forward(goal.arm.mechanism, unstack(q, 1)), E):
@@ -175,7 +180,7 @@ def _observe(goal: Pose, time: float | Array, q: Array, rates: Array) -> tuple[F
     joints, speeds = unstack(q, 1), unstack(rates, 1)
     frames = forward(arm.mechanism, joints)
     tip_rate = matvec(task_jacobian(frames, arm.task.indices), speeds)
-    tip_error = unstack(task_error(frames, arm.task, goal.tip), 1)
+    tip_error = unstack(task_error(frames, arm.task, goal.target), 1)
     return frames, Measured(time, joints[arm.m :], speeds[arm.m :], tip_error, tip_rate)
 
 

@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexbase.checks import Array, check_length
-from flexbase.dynamics.inverse_kinematics import arm_angles_of_many, reach
+from flexbase.dynamics.inverse_kinematics import arm_angles_of_many, elbow_of, reach
 from flexbase.dynamics.two_joint_arm import two_joint_arm
 from flexbase.errors import InputError, nearest_name
 from flexbase.model.task import check_branch
 from flexbase.plant import Plant
 from flexbase.sweep.chart import Axis
 
+BENT = 0.5  # rad or m, where joints outside a joint map stand: at zero many arms are stretched
 MARGIN = 1.02  # half-width of the default window, over the arm's reach
 
 
@@ -36,10 +37,15 @@ def tip_grid(
     """A grid over the first two task rows; `hold` gives the others. Raises InputError."""
     task = plant.arm.task
     if task.k < 2:
-        raise InputError(f"map over tip: {plant.name} has one task row, two are needed. Map over joints instead.")
+        raise InputError(
+            f"map over tip: {plant.name} has one task row, two are needed; a map over joints needs two arm joints."
+        )
     window = _window(plant) if bounds is None else _checked_bounds(bounds)
     held = check_length(
-        "hold", hold, task.k - 2, f"one for each task row after the second ({' '.join(task.rows[2:]) or 'none'})"
+        "hold",
+        hold,
+        task.k - 2,
+        f"give hold, one for each task row after the second ({' '.join(task.rows[2:]) or 'none'})",
     )
     axes = tuple(Axis(task.rows[i], task.units[i], _ticks(window, i, shape)) for i in range(2))
     x, y = np.meshgrid(axes[0].values, axes[1].values)
@@ -52,24 +58,26 @@ def tip_grid(
 def joint_grid(
     plant: Plant, shape: tuple[int, int], bounds: Sequence[float] | None, joints: Sequence[str], hold: Sequence[float]
 ) -> Grid:
-    """A grid over two arm joints; the others stand at `hold`, n values (zero if empty). Raises InputError."""
+    """A grid over two arm joints; the others stand at `hold`, n values (`BENT` if empty). Raises InputError."""
     arm = plant.arm
     names = arm.mechanism.joint_names[arm.m :]
     if arm.n < 2:
         raise InputError(f"map over joints: {plant.name} has one arm joint, two are needed.")
-    chosen = tuple(joints) or names[-2:]
+    elbow = elbow_of(arm.n) or 1
+    chosen = tuple(joints) or names[elbow - 1 : elbow + 1]
     if len(chosen) != 2 or chosen[0] == chosen[1]:
         raise InputError(f"map over joints: {list(chosen)} given, two different arm joints needed.")
     for name in chosen:
         if name not in names:
             raise InputError(f'map over joints: no arm joint "{name}". {nearest_name(name, names)}')
-    window = [-np.pi, np.pi, -np.pi, np.pi] if bounds is None else _checked_bounds(bounds)
     places = [names.index(name) for name in chosen]
     kinds = [arm.mechanism.joint_types[arm.m + place] for place in places]
+    spans = [np.pi if kind == "revolute" else reach(arm.mechanism) for kind in kinds]
+    window = [-spans[0], spans[0], -spans[1], spans[1]] if bounds is None else _checked_bounds(bounds)
     units = ["rad" if kind == "revolute" else "m" for kind in kinds]
     axes = tuple(Axis(chosen[i], units[i], _ticks(window, i, shape)) for i in range(2))
     x, y = np.meshgrid(axes[0].values, axes[1].values)
-    still = check_length("hold", hold, arm.n, "one for each arm joint") if len(hold) else np.zeros(arm.n)
+    still = check_length("hold", hold, arm.n, "one for each arm joint") if len(hold) else np.full(arm.n, BENT)
     cells = np.tile(still, (x.size, 1))
     cells[:, places[0]], cells[:, places[1]] = x.ravel(), y.ravel()
     return Grid((axes[0], axes[1]), cells, np.ones(x.size, dtype=bool))

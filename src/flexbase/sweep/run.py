@@ -38,15 +38,17 @@ def sweep(
 
     Modes are those of `real_modes`: exact for one base joint and for proportional damping.
 
-    over : "tip", the first two task rows; or "joints", two arm joints (`joints` names them; the last two if left out)
+    over : "tip", the first two task rows; or "joints", two arm joints (`joints` names them; if left out, the elbow and
+        the one before)
     bounds : low, high, low, high of the two axes; the arm's reach, or a full turn, if left out
     hold : over tip, the task rows after the second; over joints, all n arm joints
     progress : called with the cells done and all cells
     Raises InputError. A cell that cannot be judged gets a status instead of values.
     """
+    measures = [measures] if isinstance(measures, str) else measures
     chosen = [choose("measure", name, MEASURES) for name in measures]
-    if len(shape) != 2 or min(shape) < 2 or shape[0] * shape[1] > LARGEST:
-        raise InputError(f"shape: {list(shape)} is not two counts from 2 up with at most {LARGEST} cells.")
+    if not isinstance(shape, Sequence) or len(shape) != 2 or min(shape) < 2 or shape[0] * shape[1] > LARGEST:
+        raise InputError(f"shape: {shape} is not two counts from 2 up with at most {LARGEST} cells.")
     arm = plant.arm
     if arm.has_gravity:
         warnings.warn(

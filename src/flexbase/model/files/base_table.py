@@ -116,6 +116,8 @@ def _springs(
     m = len(equilibrium)
     if (table.frequency is None) == (table.stiffness is None) and m:
         raise InputError(f"{where}stiffness: give either stiffness and damping, or frequency and damping_ratio.")
+    if table.frequency is not None and not m:
+        raise InputError(f"{where}frequency: there are no base joints. Remove the key, or add joints.")
     if table.frequency is None:
         if table.damping_ratio is not None or table.reference is not None:
             raise InputError(f"{where}damping_ratio and reference go with frequency. Give damping instead.")

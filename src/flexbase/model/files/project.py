@@ -39,6 +39,8 @@ def load_project(robot: str | Path, inertia_at: InertiaAt) -> MountedArm:
     inertia_at : M at a configuration, for bases that are given by frequencies
     Raises InputError, MissingExtra.
     """
+    if not isinstance(robot, str | Path):
+        raise InputError(f"robot: {type(robot).__name__} given. Give a bundled name or a path.")
     if isinstance(robot, str) and robot in bundled():
         with resources.as_file(resources.files(LIBRARY)) as folder:
             return parse_project((folder / f"{robot}.toml").read_text("utf-8"), robot, inertia_at, folder)

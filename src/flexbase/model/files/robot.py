@@ -23,7 +23,7 @@ def read_robot_file(path: Path, tool: str | None, *, folder: Path) -> RobotFile:
     Raises InputError in a line or two, which repeats nothing of the file but names of links and joints, cut to a few
     characters; MissingExtra without the packages of the extra "robots".
     """
-    name = shown(path.name)[1:-1]
+    name = shown(path.name or str(path))[1:-1]
     try:
         return _read(read_bytes(path, folder), tool)
     except InputError as fault:

@@ -27,6 +27,8 @@ def mechanism_of(table: RobotTable, base_joints: int, source: str, folder: Path 
     if table.links is not None:
         if table.tool is not None:
             raise InputError(f"{source}, [robot] tool: planar links end in their tool. Remove the key.")
+        if table.file_friction:
+            raise InputError(f"{source}, [robot] file_friction: there is no robot file. Give friction instead.")
         mechanism = planar(table.links, source)
     else:
         mechanism = _from_file(table, source, folder, base_joints)
@@ -38,7 +40,7 @@ def mechanism_of(table: RobotTable, base_joints: int, source: str, folder: Path 
             inertia_matrix(f"{where}inertia", table.payload.inertia),
         )
         mechanism = with_payload(mechanism, payload)
-    n = mechanism.N - base_joints
+    n = max(mechanism.N - base_joints, 0)
     return replace(
         mechanism,
         friction=_for_the_arm(f"{source}, [robot] friction", table.friction, n, mechanism.friction),
@@ -47,13 +49,13 @@ def mechanism_of(table: RobotTable, base_joints: int, source: str, folder: Path 
 
 
 def _for_the_arm(name: str, given: list[float] | None, n: int, otherwise: Array) -> Array:
-    """Values for the last n joints, zero for those of the base; what stands there already if none are given."""
+    """Values for the last n joints before what stands there already for the base; all of that if none are given."""
     if given is None:
         return otherwise
     values = check_length(name, given, n, "one for each arm joint")
     if (values < 0.0).any():
         raise InputError(f"{name}: {values.min():g} is negative. Give zero or more.")
-    return np.concatenate([np.zeros(len(otherwise) - n), values])
+    return np.concatenate([otherwise[: len(otherwise) - n], values])
 
 
 def inertia_matrix(name: str, numbers: list[float]) -> Array:

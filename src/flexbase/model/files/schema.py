@@ -148,7 +148,7 @@ class ControlTable(Table):
 class ProjectFile(Table):
     """A flexbase project: an arm on a compliant base, its task and its default gains. SI units."""
 
-    schema_version: Literal[1] = Field(1, description="version of this file format")
+    schema_version: int = Field(1, ge=1, le=1, description="version of this file format")
     name: str = Field(min_length=1, description="how results name this machine")
     gravity: Numbers = Field([0.0, 0.0, 0.0], description="free-fall acceleration in world axes [m/s^2]")
     robot: RobotTable
