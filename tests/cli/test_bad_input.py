@@ -40,7 +40,7 @@ COMMAND_LINES = {
     "unknown robot": (("check", "ueda203"), ("ueda203", '"ueda2003"')),
     "a folder": (("check", "."), ("not a file",)),
     "method": (("design", "ueda2003", *AT, "--method", "exakt"), ("exakt", '"exact"')),
-    "foreign option": (("design", "ueda2003", *AT, "--step", "0.1"), ("exact", '"step"')),
+    "foreign option": (("design", "ueda2003", *AT, "--method", "exact", "--step", "0.1"), ("exact", '"step"')),
     "objective": (("design", "ueda2003", *AT, "--objective", "least"), ("least-gain", "least-radius")),
     "frequency": (("design", "ueda2003", *AT, "--natural-frequency", "-5"), ("-5",)),
     "iterations": (("design", "ueda2003", *AT, "--iterations", "1.5"), ("--iterations", "1.5")),
