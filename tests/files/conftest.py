@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from flexbase.errors import InputError
-from flexbase.model.files.robot import RobotFile, read_robot_file
+from flexbase.model.formats.robot import RobotFile, read_robot_file
 
 DATA = Path(__file__).parent / "data"
 

@@ -25,7 +25,7 @@ from hypothesis import seed as hypothesis_seed
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from files.mutations import documents, hostile_files
 from flexbase.errors import InputError
-from flexbase.model.files.robot import RobotFile, read_robot_file
+from flexbase.model.formats.robot import RobotFile, read_robot_file
 
 SECONDS = 10.0  # for one input; a sound file takes some milliseconds
 GROWN = 0.25  # share of the inputs that hypothesis grows

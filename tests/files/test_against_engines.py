@@ -11,7 +11,7 @@ from files.engines import GRAVITY, Answer, mujoco_answer, pinocchio_answer
 from flexbase.dynamics.forces import bias_forces
 from flexbase.dynamics.inertia import mass_matrix
 from flexbase.dynamics.kinematics import forward, jacobian
-from flexbase.model.files.robot import read_robot_file
+from flexbase.model.formats.robot import read_robot_file
 
 DATA = Path(__file__).parent / "data"
 POSES = 50

@@ -9,8 +9,8 @@ import time
 import pytest
 
 from flexbase.errors import InputError, MissingExtra
-from flexbase.model.files.guard import DEEPEST, LARGEST_FILE, MOST_ELEMENTS, parse
-from flexbase.model.files.robot import read_robot_file
+from flexbase.model.formats.guard import DEEPEST, LARGEST_FILE, MOST_ELEMENTS, parse
+from flexbase.model.formats.robot import read_robot_file
 
 from .conftest import DATA
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from flexbase.model.files.robot import read_robot_file
+from flexbase.model.formats.robot import read_robot_file
 
 from .conftest import DATA
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from flexbase.model.files.chain import MOST_JOINTS
-from flexbase.model.files.robot import read_robot_file
-from flexbase.model.files.urdf import MOST_LINKS
+from flexbase.model.formats.chain import MOST_JOINTS
+from flexbase.model.formats.robot import read_robot_file
+from flexbase.model.formats.urdf import MOST_LINKS
 
 ARM_INERTIA = 'ixx="0.01" iyy="0.17" izz="0.17"'
 JOINT = '<joint name="swing" type="revolute">'

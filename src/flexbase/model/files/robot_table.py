@@ -11,8 +11,8 @@ import numpy as np
 from flexbase.checks import Array, check_length
 from flexbase.errors import FlexbaseWarning, InputError
 from flexbase.model.files.planar import planar
-from flexbase.model.files.robot import read_robot_file
 from flexbase.model.files.schema import RobotTable
+from flexbase.model.formats.robot import read_robot_file
 from flexbase.model.mechanism import Body, Mechanism, with_payload
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from flexbase.errors import FlexbaseError, InputError
-from flexbase.model.files.chain import RobotFile
-from flexbase.model.files.guard import parse, read_bytes, shown
-from flexbase.model.files.mjcf_tree import read_mjcf
-from flexbase.model.files.urdf_tree import read_urdf
+from flexbase.model.formats.chain import RobotFile
+from flexbase.model.formats.guard import parse, read_bytes, shown
+from flexbase.model.formats.mjcf_tree import read_mjcf
+from flexbase.model.formats.urdf_tree import read_urdf
 
 READERS = {"robot": read_urdf, "mujoco": read_mjcf}
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from flexbase.checks import Array
 from flexbase.errors import InputError, nearest_name
-from flexbase.model.files.guard import SHOWN, listed, shown
-from flexbase.model.files.notes import Notes
+from flexbase.model.formats.guard import SHOWN, listed, shown
+from flexbase.model.formats.notes import Notes
 from flexbase.model.mechanism import Body, Mechanism, merged, steiner
 
 MOST_JOINTS = 64  # moving ones in the chain

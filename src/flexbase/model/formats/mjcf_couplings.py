@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from flexbase.errors import InputError
-from flexbase.model.files.fields import name_of
-from flexbase.model.files.guard import Element, place, shown
-from flexbase.model.files.mjcf import WORLD_BODY, Mjcf
-from flexbase.model.files.notes import Notes
+from flexbase.model.formats.fields import name_of
+from flexbase.model.formats.guard import Element, place, shown
+from flexbase.model.formats.mjcf import WORLD_BODY, Mjcf
+from flexbase.model.formats.notes import Notes
 
 ENDS = {
     "connect": ("body1", "body2", "site1", "site2"),

@@ -7,7 +7,7 @@ import re
 from collections.abc import Collection
 
 from flexbase.errors import InputError
-from flexbase.model.files.guard import LONGEST_NAME, Element, listed, place
+from flexbase.model.formats.guard import LONGEST_NAME, Element, listed, place
 
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 LONGEST_TEXT = 1000  # characters of an attribute that holds numbers

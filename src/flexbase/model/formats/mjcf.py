@@ -9,18 +9,18 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from flexbase.errors import InputError
-from flexbase.model.files.fields import Numbers, name_of, numbers, refuse_repeated
-from flexbase.model.files.guard import LONGEST_NAME, Element, place, shown
-from flexbase.model.files.inertias import check_inertia
-from flexbase.model.files.mjcf_attributes import clean_attributes
-from flexbase.model.files.mjcf_words import (
+from flexbase.model.formats.fields import Numbers, name_of, numbers, refuse_repeated
+from flexbase.model.formats.guard import LONGEST_NAME, Element, place, shown
+from flexbase.model.formats.inertias import check_inertia
+from flexbase.model.formats.mjcf_attributes import clean_attributes
+from flexbase.model.formats.mjcf_words import (
     IN_BODY,
     IN_BODY_IGNORED,
     SECTIONS_IGNORED,
     SECTIONS_READ,
     SOLIDS,
 )
-from flexbase.model.files.notes import Notes
+from flexbase.model.formats.notes import Notes
 
 MOST = 500  # bodies, joints, named sites, frames, default classes: MuJoCo takes longer than in proportion
 MOST_GEOMS = 2000  # that weigh something

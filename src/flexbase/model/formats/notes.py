@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from flexbase.model.files.guard import listed
+from flexbase.model.formats.guard import listed
 
 
 @dataclass(eq=False)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from xml.sax.saxutils import quoteattr
 
 from flexbase.errors import InputError
-from flexbase.model.files.fields import numbers, word
-from flexbase.model.files.guard import Element, listed, place
-from flexbase.model.files.mjcf_words import DIRECTIONS, IGNORED, INTEGERS, KEPT, SHAPES, Count
+from flexbase.model.formats.fields import numbers, word
+from flexbase.model.formats.guard import Element, listed, place
+from flexbase.model.formats.mjcf_words import DIRECTIONS, IGNORED, INTEGERS, KEPT, SHAPES, Count
 
 
 def clean_attributes(element: Element) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 
 from flexbase.checks import Array
 from flexbase.errors import InputError, import_extra
-from flexbase.model.files.chain import (
+from flexbase.model.formats.chain import (
     AT_ORIGIN,
     NOTHING,
     WORLD,
@@ -23,10 +23,10 @@ from flexbase.model.files.chain import (
     turned,
     welded,
 )
-from flexbase.model.files.guard import Element, shown
-from flexbase.model.files.mjcf import Mjcf, check_mjcf
-from flexbase.model.files.mjcf_couplings import check_couplings
-from flexbase.model.files.notes import Notes
+from flexbase.model.formats.guard import Element, shown
+from flexbase.model.formats.mjcf import Mjcf, check_mjcf
+from flexbase.model.formats.mjcf_couplings import check_couplings
+from flexbase.model.formats.notes import Notes
 from flexbase.model.mechanism import Body
 
 HINGE = 3  # mjtJoint

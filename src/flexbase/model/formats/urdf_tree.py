@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from flexbase.errors import import_extra
-from flexbase.model.files.chain import Moving, Place, RobotFile, chain_to, choose_tool
-from flexbase.model.files.fields import Numbers
-from flexbase.model.files.guard import Element
-from flexbase.model.files.notes import Notes
-from flexbase.model.files.urdf import MOVING, Urdf, UrdfJoint, UrdfLink, check_mimics, check_urdf
+from flexbase.model.formats.chain import Moving, Place, RobotFile, chain_to, choose_tool
+from flexbase.model.formats.fields import Numbers
+from flexbase.model.formats.guard import Element
+from flexbase.model.formats.notes import Notes
+from flexbase.model.formats.urdf import MOVING, Urdf, UrdfJoint, UrdfLink, check_mimics, check_urdf
 from flexbase.model.mechanism import Body
 
 WIDE = 1e9  # limits that Pinocchio asks for and that nothing here uses

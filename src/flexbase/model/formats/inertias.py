@@ -6,7 +6,7 @@ import numpy as np
 
 from flexbase.checks import Array
 from flexbase.errors import InputError
-from flexbase.model.files.fields import Numbers
+from flexbase.model.formats.fields import Numbers
 
 INDEFINITE = 1e-4  # of the largest moment: what rounding to four digits can do to the smallest one
 ROUNDING = 1e-9

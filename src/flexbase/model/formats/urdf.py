@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 
 from flexbase.errors import InputError
-from flexbase.model.files.fields import Numbers, direction, name_of, number, numbers, refuse_repeated, vector, word
-from flexbase.model.files.guard import Element, listed, shown
-from flexbase.model.files.inertias import check_inertia
-from flexbase.model.files.notes import Notes
+from flexbase.model.formats.fields import Numbers, direction, name_of, number, numbers, refuse_repeated, vector, word
+from flexbase.model.formats.guard import Element, listed, shown
+from flexbase.model.formats.inertias import check_inertia
+from flexbase.model.formats.notes import Notes
 
 MOST_LINKS = 500
 MOVING = ("revolute", "continuous", "prismatic")
