@@ -12,7 +12,7 @@ from flexbase.cli.document import document
 from flexbase.cli.gains import GainOptions
 from flexbase.cli.method import MethodOptions
 from flexbase.cli.options import Json
-from flexbase.cli.out import OutFile, check_out, written
+from flexbase.cli.out import PICTURES, OutFile, check_out, written
 from flexbase.cli.pose import PoseOptions, Robot
 from flexbase.cli.show import put
 from flexbase.design import design as design_at
@@ -44,7 +44,8 @@ def design(
     json: Json = False,
 ) -> int:
     """Design E of tau = tau~ + E q'' at a pose, with the certificate of what it does."""
-    check_out(out, (".json",))
+    is_picture = out is not None and out.suffix.lower() in PICTURES
+    check_out(out, (".json",) if is_picture else ())  # it is JSON whatever its name
     plant = load(robot)
     gains = loop.gains(plant)
     try:
