@@ -78,11 +78,10 @@ def simulate(
     gains = plant.arm.gains if gains is None else checked_gains(gains, plant.arm.k)
     if gains is None:
         raise InputError(f"{plant.name}: no task gains. Add a [control] table to the project, or give gains.")
-    if not 0.0 < switch < end < np.inf or not end / LARGEST <= interval <= end - switch:
-        raise InputError(
-            f"times: 0 < switch ({switch:g}) < end ({end:g}) and an interval ({interval:g}) from {end / LARGEST:g} to "
-            f"{end - switch:g} are needed."
-        )
+    if not 0.0 < switch < end < np.inf:
+        raise InputError(f"times: switch ({switch:g} s) must lie above 0 and below end ({end:g} s). Give such times.")
+    if not end / LARGEST <= interval <= end - switch:
+        raise InputError(f"times: interval ({interval:g} s) must lie from {end / LARGEST:g} to {end - switch:g} s.")
     if compensate not in WHEN:
         raise InputError(f'compensate: "{compensate}" is unknown. Give one of {", ".join(WHEN)}.')
     if not bandwidth > 0.0:
