@@ -16,6 +16,7 @@ GEOM = '<geom type="box" size="0.5 0.1 0.1" pos="0.5 0 0"/>'
 INERTIAL = '<inertial pos="0 0 0" mass="1" diaginertia="0.1 0.1 0.1"/>'
 COMPILER = '<compiler angle="radian"/>'
 WORLD_END = "</worldbody>"
+OFF_AXIS = ('<inertial pos="0 0 0"', '<inertial pos="0 0.1 0"')
 
 
 def test_a_chain_and_what_hangs_on_it(changed):
@@ -38,7 +39,8 @@ def test_a_chain_and_what_hangs_on_it(changed):
         ("shoulder", "dry friction"),
     ):
         assert any(f'"{name}"' in note and words in note for note in robot.notes)
-    assert len(robot.notes) == 4
+    assert any(note.startswith('actuator "<position> of elbow": servo gains (kp, kv') for note in robot.notes)
+    assert len(robot.notes) == 5
 
 
 def test_nothing_is_opened_and_nothing_is_written(changed, tmp_path, monkeypatch):
@@ -59,8 +61,13 @@ def test_nothing_is_opened_and_nothing_is_written(changed, tmp_path, monkeypatch
         "no mass": ([('mass="1" ', "")], ['"tool"', "mass is missing"]),
         "indefinite": ([('diaginertia="0.1 0.1 0.1"', 'fullinertia="1 1 1 2 0 0"')], ['"tool"', "negative principal"]),
         "negative moment": ([("0.1 0.1 0.1", "0.1 -0.1 0.1")], ['"tool"', "negative principal"]),
-        "triangle": ([("0.1 0.1 0.1", "0.1 0.1 0.3")], ['body "tool"', "balanceinertia"]),
-        "massless": ([(INERTIAL, "")], ['body "tool"', "mjMINVAL"]),
+        "triangle": ([("0.1 0.1 0.1", "0.1 0.1 0.3")], ['body "tool"', "A + B >= C", "10% of C"]),
+        "two inertials": ([(INERTIAL, INERTIAL + f"<frame>{INERTIAL}</frame>")], ['"tool"', "2 times"]),
+        "inertia in two ways": (
+            [("diaginertia", 'fullinertia="1 1 1 0 0 0" diaginertia')],
+            ["MuJoCo refuses", "fullinertia", '"tool"'],
+        ),
+        "inertial of the world": ([("<worldbody>", f"<worldbody>{INERTIAL}")], ["the world has no inertial"]),
         "ball": ([(SWING, '<joint name="swing" type="ball"/>')], ['"swing"', "ball and free"]),
         "free": ([(SWING, '<joint name="swing" type="free"/>')], ['"swing"', "ball and free"]),
         "free joint": ([(SWING, '<freejoint name="swing"/>')], ['"swing"', "free joints"]),
@@ -206,10 +213,49 @@ def test_couplings_of_nothing_are_refused(changed, coupling):
     {
         "dry friction": ([('armature="0.1"', 'frictionloss="0.1"')], 'joint "swing": dry friction'),
         "gravity compensation": ([('pos="0 0 1"', 'gravcomp="1"')], 'body "arm": gravcomp'),
-        "armature of a motor": (
-            [("</mujoco>", '<actuator><motor joint="swing" armature="2"/></actuator></mujoco>')],
-            "armature of actuators",
+        "motor": (
+            [("</mujoco>", '<actuator><motor name="drive" joint="swing" gear="50"/></actuator></mujoco>')],
+            'actuator "drive": gear and limits not used',
         ),
+        "servos": (
+            [
+                (
+                    "</mujoco>",
+                    '<actuator><position name="p" joint="swing" kp="100"/><general name="g" joint="turn" '
+                    'biastype="affine" gainprm="9" biasprm="0 -9 -1"/></actuator></mujoco>',
+                )
+            ],
+            'actuators "p", "g": servo gains (kp, kv, gainprm, biasprm) not used',
+        ),
+        "plugin of an extension": (
+            [
+                (
+                    "</mujoco>",
+                    '<extension><plugin plugin="mujoco.pid"><instance name="i"/></plugin></extension></mujoco>',
+                )
+            ],
+            'plugin "mujoco.pid": of an extension, ignored',
+        ),
+        "water": (
+            [("</mujoco>", '<option density="1000" viscosity="1" wind="0 0 0"/></mujoco>')],
+            'options "density", "viscosity": ignored',
+        ),
+        "rounded inertia": (
+            [("0.1 0.1 0.1", "0.1 0.1 0.21")],
+            'body "tool": principal moments of inertia that violate',
+        ),
+        "slightly indefinite": (
+            [("0.1 0.1 0.1", "0.1 0.1 -1e-6")],
+            'body "tool": a slightly negative principal moment',
+        ),
+        "placeholder": ([("0.1 0.1 0.1", "0 0 0"), OFF_AXIS], 'body "tool": a mass without inertia'),
+        "no inertia": ([(' diaginertia="0.1 0.1 0.1"', ""), OFF_AXIS], 'body "tool": a mass without inertia'),
+        "inertia without mass": ([('mass="1"', 'mass="0"')], 'body "tool": an inertia without mass'),
+        "balanced": (
+            [("0.1 0.1 0.1", "0.1 0.1 0.7"), (COMPILER, '<compiler angle="radian" balanceinertia="true"/>')],
+            'body "tool": principal moments of inertia averaged',
+        ),
+        "a joint that moves nothing": ([(INERTIAL, "")], 'joint "turn": no inertia to move'),
         "a body and a site": ([(INERTIAL, INERTIAL + '<site name="tool"/>')], '"tool" is both'),
     }.values(),
 )
@@ -217,6 +263,62 @@ def test_what_is_odd_is_noted_by_name(changed, changes, words):
     robot = changed.read("plain.xml", *changes)
     assert len(robot.notes) == 1
     assert words in robot.notes[0]
+
+
+def test_the_armature_of_an_actuator_is_noted_by_name(changed):
+    notes = changed.read(
+        "plain.xml", ("</mujoco>", '<actuator><motor name="m" joint="swing" armature="2"/></actuator></mujoco>')
+    ).notes
+    assert notes[1] == 'actuator "m": armature of the actuator ignored: give it as [robot] rotor_inertia'
+    assert len(notes) == 2
+
+
+def test_odd_inertias_are_the_files_own_numbers(changed):
+    """What MuJoCo's compiler would refuse, to the last digit, in the frame of the inertial and of frames around it."""
+    odd = '<inertial pos="1 2 3" mass="2" diaginertia="0.1 0.21 0.1" euler="0 0 90"/>'
+    in_frame = f'<frame pos="0 0 1" euler="90 0 0">{odd}</frame>'
+    degrees = (COMPILER, "<compiler/>")
+    plain, framed = (changed.read("plain.xml", degrees, (INERTIAL, text)).mechanism for text in (odd, in_frame))
+    assert plain.mass[1] == 2.0
+    assert plain.com[1] == pytest.approx([1.0, 2.0, 3.0])
+    assert plain.inertia[1] == pytest.approx(np.diag([0.21, 0.1, 0.1]), abs=1e-15)
+    assert framed.com[1] == pytest.approx([1.0, -3.0, 3.0])
+    assert framed.inertia[1] == pytest.approx(np.diag([0.21, 0.1, 0.1]), abs=1e-15)
+    full = changed.read("plain.xml", (INERTIAL, '<inertial pos="0 0 0" mass="2" fullinertia="1 2 2.9 0.1 0.2 0.3"/>'))
+    assert np.array_equal(full.mechanism.inertia[1], [[1.0, 0.1, 0.2], [0.1, 2.0, 0.3], [0.2, 0.3, 2.9]])
+
+
+@pytest.mark.parametrize("bounds", ['boundmass="3" boundinertia="0.15"', 'balanceinertia="true" boundmass="0"'])
+@pytest.mark.parametrize(
+    "inertia", ['diaginertia="0.1 0.1 0.19" euler="1 2 3"', 'fullinertia="0.3 0.3 0.4 0 0.05 0.05"']
+)
+def test_bounds_of_the_compiler_are_mujocos(changed, bounds, inertia):
+    """boundmass, boundinertia and balanceinertia do what MuJoCo does with the same file."""
+    mujoco = pytest.importorskip("mujoco")
+    changes = ((COMPILER, f'<compiler angle="radian" {bounds}/>'), ('diaginertia="0.1 0.1 0.1"', inertia))
+    ours = changed.read("plain.xml", *changes).mechanism
+    model = mujoco.MjModel.from_xml_path(str(changed.folder / "plain.xml"))
+    turn = np.zeros(9)
+    mujoco.mju_quat2Mat(turn, model.body_iquat[2])
+    turn = turn.reshape(3, 3)
+    assert ours.mass.tolist() == model.body_mass[1:].tolist()
+    assert ours.inertia[1] == pytest.approx(turn @ np.diag(model.body_inertia[2]) @ turn.T, abs=1e-12)
+
+
+def test_bodies_without_mass_between_joints_are_normal(changed):
+    """The same arm with a bare body, or one whose geoms weigh nothing, between its joints."""
+    bare = '<body name="cross"><joint name="other" axis="0 1 0"/>{}{}</body>'
+    whole = (
+        '<body name="tool" pos="1 0 0">'
+        + (DATA / "plain.xml").read_text().partition('<body name="tool" pos="1 0 0">')[2]
+    )
+    inner = whole[: whole.index("</body>") + len("</body>")]
+    for geom in ("", '<geom type="box" size="1 1 1" mass="0"/>'):
+        robot = changed.read("plain.xml", (inner, bare.format(geom, inner)))
+        assert robot.mechanism.joint_names == ("swing", "other", "turn")
+        assert robot.mechanism.mass[1] == 0.0
+        assert not robot.mechanism.inertia[1].any()
+        assert robot.notes == ()
 
 
 @pytest.mark.parametrize(

@@ -62,6 +62,7 @@ def test_arrays_are_frozen(changed):
         "no mass": ([('<mass value="2"/>', "")], ['"arm"', "<mass>"]),
         "negative moment": ([(ARM_INERTIA, 'ixx="-0.01" iyy="0.17" izz="0.17"')], ['"arm"', "negative principal"]),
         "indefinite": ([('ixy="0"', 'ixy="0.3"')], ['"arm"', "negative principal"]),
+        "triangle": ([(ARM_INERTIA, 'ixx="0.01" iyy="0.1" izz="0.17"')], ['link "arm"', "A + B >= C", "10% of C"]),
         "missing moment": ([('ixz="0"', "")], ["<inertia>", "ixz"]),
         "zero axis": ([('<axis xyz="0 0 1"/>', '<axis xyz="0 0 0"/>')], ["<axis>", "direction"]),
         "short axis": ([('<axis xyz="0 0 1"/>', '<axis xyz="0 1"/>')], ["<axis>", "3 numbers"]),
@@ -101,7 +102,7 @@ def test_what_is_not_sound_is_refused_by_name(changed, changes, words):
 @pytest.mark.parametrize(
     ("changes", "words"),
     {
-        "triangle inequality": ([(ARM_INERTIA, 'ixx="0.01" iyy="0.1" izz="0.17"')], '"arm": principal moments'),
+        "triangle inequality": ([(ARM_INERTIA, 'ixx="0.01" iyy="0.15" izz="0.17"')], '"arm": principal moments'),
         "slightly indefinite": ([(ARM_INERTIA, 'ixx="-0.000001" iyy="0.17" izz="0.17"')], '"arm": a slightly negative'),
         "placeholder": ([(ARM_INERTIA, 'ixx="0" iyy="0" izz="0"')], '"arm": a mass without inertia'),
         "no inertia": ([("<inertia ", "<intertia ")], '"arm": a mass without inertia'),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -18,6 +18,18 @@ MOST_JOINTS = 64  # moving ones in the chain
 WORLD = -1
 
 
+class Foot(NamedTuple):
+    """What stands still while the file stands alone, and moves where base joints are added below it.
+
+    body : the root link (URDF) or the body in the world that the arm stands on (MJCF), with all that is fixed to it and
+        the side branches that hang from it, in the frame of the file's root
+    notes : what the user should know if it moves
+    """
+
+    body: Body
+    notes: tuple[str, ...] = ()
+
+
 @dataclass(frozen=True, eq=False)
 class RobotFile:
     """What a robot file says, as frozen arrays. N moving joints, in chain order, SI units.
@@ -28,6 +40,7 @@ class RobotFile:
     stiffness : joint stiffness (MJCF stiffness), shape (N,): reported, so that it is never counted twice
     reference : joint positions at the pose that the file draws (MJCF ref; zero in URDF), shape (N,)
     limits : lowest and highest joint positions, infinite where there are none, shape (N, 2)
+    foot : what the chain stands on; it counts where base joints are added below it
     notes : one line for everything that was accepted, but that the user should know
     """
 
@@ -37,6 +50,7 @@ class RobotFile:
     stiffness: Array
     reference: Array
     limits: Array
+    foot: Foot
     notes: tuple[str, ...]
 
 
@@ -73,6 +87,7 @@ class Moving:
 
     parent : number of the body before it, or WORLD; parents come first in a tree
     place : the joint frame at position 0, in the parent's frame
+    piece : number of the piece of the file that it belongs to; MJCF bodies in the world are not fixed to each other
     """
 
     name: str
@@ -86,6 +101,7 @@ class Moving:
     stiffness: float = 0.0
     reference: float = 0.0
     limits: tuple[float, float] = (-np.inf, np.inf)
+    piece: int = 0
 
     @property
     def locked(self) -> Place:
@@ -95,9 +111,12 @@ class Moving:
         return self.place.then(Place(np.eye(3), self.reference * self.axis))
 
 
-def chain_to(tree: Sequence[Moving], last: int, tool: Place, notes: Sequence[str] = ()) -> RobotFile:
+def chain_to(
+    tree: Sequence[Moving], last: int, tool: Place, feet: Mapping[int, Foot], notes: Sequence[str] = ()
+) -> RobotFile:
     """The chain to a tool frame given in the frame of body `last`; side branches are welded on at their reference.
 
+    feet : what is fixed to the root, by the number of its piece
     Raises InputError if nothing moves the tool frame, or too much.
     """
     path = path_to(tree, last)
@@ -107,10 +126,13 @@ def chain_to(tree: Sequence[Moving], last: int, tool: Place, notes: Sequence[str
         raise InputError(f"{len(path)} moving joints lead to the tool frame, at most {MOST_JOINTS} can be handled.")
     side = [node.name for number, node in enumerate(tree) if number not in path]
     bodies = [node.body for node in tree]
+    foot = feet.get(tree[path[0]].piece, Foot(NOTHING))
     for number in reversed(range(len(tree))):
         node = tree[number]
         if number not in path and node.parent != WORLD:
             bodies[node.parent] = welded(bodies[node.parent], node.locked.carry(bodies[number]))
+        elif number not in path and node.piece == tree[path[0]].piece:
+            foot = foot._replace(body=welded(foot.body, node.locked.carry(bodies[number])))
     chain = [tree[number] for number in path]
     carried = [bodies[number] for number in path]
     own = Notes()
@@ -125,6 +147,7 @@ def chain_to(tree: Sequence[Moving], last: int, tool: Place, notes: Sequence[str
         stiffness=_frozen([node.stiffness for node in chain]),
         reference=_frozen([node.reference for node in chain]),
         limits=_frozen([node.limits for node in chain]),
+        foot=foot._replace(body=Body(foot.body.mass, _frozen(foot.body.com), _frozen(foot.body.inertia))),
         notes=(*notes, *own.lines()),
     )
 

@@ -6,12 +6,13 @@ so that there is no path that it could open.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
+from flexbase.checks import Array
 from flexbase.errors import InputError
-from flexbase.model.formats.fields import Numbers, name_of, numbers, refuse_repeated
+from flexbase.model.formats.fields import Numbers, name_of, number, numbers, refuse_repeated
 from flexbase.model.formats.guard import LONGEST_NAME, Element, place, shown
-from flexbase.model.formats.inertias import check_inertia
+from flexbase.model.formats.inertias import as_compiled, judge_inertia, refuse_negative, tensor
 from flexbase.model.formats.mjcf_attributes import clean_attributes
 from flexbase.model.formats.mjcf_words import (
     IN_BODY,
@@ -27,20 +28,26 @@ MOST_GEOMS = 2000  # that weigh something
 WORLD_BODY = 0
 MAIN = "main"
 ZERO = {"0", "0.0", "0."}
+LEAST = 1e-14  # kg, kg m^2: MuJoCo wants more than 1e-15 of whatever moves; what has no more weighs nothing here
+STAND_IN = {"mass": "1", "diaginertia": "1 1 1", "fullinertia": "3 2.5 2 0 0 0"}  # it may not judge the file's own
 
 
 @dataclass(eq=False)
 class MjcfBody:
     """A body as written: `name` may be made up.
 
-    moves : whether a joint is above or in it; bodies fixed to the world weigh nothing here
+    moves : whether a joint is above or in it
+    weighs : whether it moves, or the arm stands on it; scenery weighs nothing here
     from_geoms : whether its geoms are what it weighs
+    own : otherwise its mass and its inertia in the axes of its inertial frame, None where it has neither
     """
 
     name: str
     parent: int
     moves: bool
+    weighs: bool
     from_geoms: bool
+    own: tuple[float, Array] | None = None
     joints: list[int] = field(default_factory=list)
 
 
@@ -49,7 +56,7 @@ class Mjcf:
     """A robot in our own words, and what its numbered names stand for. bodies[0] is the world."""
 
     text: list[str] = field(default_factory=list)
-    bodies: list[MjcfBody] = field(default_factory=lambda: [MjcfBody("world", -1, False, False)])
+    bodies: list[MjcfBody] = field(default_factory=lambda: [MjcfBody("world", -1, False, False, False)])
     joints: list[str] = field(default_factory=list)
     sites: dict[str, int] = field(default_factory=dict)  # in the order of their numbers; -> body
     geoms: dict[str, int] = field(default_factory=dict)
@@ -57,8 +64,18 @@ class Mjcf:
     classes: dict[str, str] = field(default_factory=lambda: {MAIN: MAIN})
     geom_defaults: dict[str, dict[str, str]] = field(default_factory=lambda: {MAIN: {}})
     from_geoms: str = "auto"
+    least_mass: float = 0.0
+    least_moment: float = 0.0
+    balance: bool = False
     frames: int = 0
     notes: Notes = field(default_factory=Notes)
+    foot_notes: Notes = field(default_factory=Notes)  # on bodies that stand still in the file
+
+    def remark(self, body: int, text: str) -> None:
+        """Remark on what a body weighs."""
+        whose = self.bodies[body]
+        if whose.weighs:
+            (self.notes if whose.moves else self.foot_notes).add("body", whose.name, text)
 
     def ancestors(self, body: int) -> list[int]:
         """The body and all above it but the world, from the world outwards."""
@@ -81,7 +98,7 @@ def check_mjcf(root: Element) -> Mjcf:
     for section in root.children:
         if section.tag not in SECTIONS_READ | SECTIONS_IGNORED:
             raise InputError(f"{place(section)}: not supported, because it could move or weigh something. Remove it.")
-    mjcf.text.append("<mujoco>")
+    mjcf.text.append(f'<mujoco><compiler boundmass="{LEAST}" boundinertia="{LEAST}"/>')
     for compiler in root.all("compiler"):
         _compiler(mjcf, compiler)
     for default in root.all("default"):
@@ -107,7 +124,13 @@ def _compiler(mjcf: Mjcf, element: Element) -> None:
         )
     given.pop("settotalmass", None)
     mjcf.from_geoms = given.get("inertiafromgeom", mjcf.from_geoms)
-    mjcf.text.append(f"<compiler{clean_attributes(Element('compiler', given, element.line))}/>")
+    mjcf.least_mass = number(element, "boundmass") if "boundmass" in given else mjcf.least_mass
+    mjcf.least_moment = number(element, "boundinertia") if "boundinertia" in given else mjcf.least_moment
+    mjcf.balance = given.get("balanceinertia", str(mjcf.balance).lower()) == "true"
+    for key in ("boundmass", "boundinertia"):
+        if key in given and number(element, key) <= LEAST:
+            given[key] = repr(LEAST)
+    mjcf.text.append(f"<compiler{clean_attributes(replace(element, attributes=given))}/>")
 
 
 def _default(mjcf: Mjcf, element: Element, inherited: str | None) -> None:
@@ -163,9 +186,7 @@ def _nested(mjcf: Mjcf, element: Element, parent: int, childclass: str) -> None:
     if element.tag == "body":
         _refuse_more("bodies", len(mjcf.bodies) - 1)
         inner = len(mjcf.bodies)
-        moves, explicit = _moves(mjcf, element, parent), element.one("inertial") is not None
-        weighed = moves and (mjcf.from_geoms == "true" or (mjcf.from_geoms == "auto" and not explicit))
-        mjcf.bodies.append(MjcfBody(_own_name(element, f"(body {inner})"), parent, moves, weighed))
+        mjcf.bodies.append(_body(mjcf, element, parent, _own_name(element, f"(body {inner})")))
         name = f' name="b{inner}"'
         if element.attributes.get("mocap", "false") == "true":
             raise InputError(f"{place(element)}: mocap bodies are not supported. Remove it.")
@@ -179,12 +200,25 @@ def _nested(mjcf: Mjcf, element: Element, parent: int, childclass: str) -> None:
     mjcf.text.append(f"</{element.tag}>")
 
 
-def _moves(mjcf: Mjcf, element: Element, parent: int) -> bool:
-    """Whether a joint stands above or in a body; MuJoCo allows joints inside frames too."""
+def _body(mjcf: Mjcf, element: Element, parent: int, name: str) -> MjcfBody:
+    above, inside = mjcf.bodies[parent], _inside(element, {"frame"})
+    moves = above.moves or any(child.tag in ("joint", "freejoint") for child in inside)
+    weighs = moves or above.weighs
+    if parent == WORLD_BODY:
+        weighs = weighs or any(child.tag == "joint" for child in _inside(element, {"frame", "body"}))
+    inertials = [child for child in inside if child.tag == "inertial"]
+    if len(inertials) > 1:
+        raise InputError(f"{place(element)}: <inertial> is given {len(inertials)} times. Keep one.")
+    from_geoms = mjcf.from_geoms == "true" or (mjcf.from_geoms == "auto" and not inertials)
+    return MjcfBody(name, parent, moves, weighs, weighs and from_geoms)
+
+
+def _inside(element: Element, through: set[str]) -> list[Element]:
+    """The elements in a body; MuJoCo allows most of them inside frames too."""
     inside = list(element.children)
     for child in inside:  # grows while it is walked
-        inside += child.children if child.tag == "frame" else []
-    return mjcf.bodies[parent].moves or any(child.tag in ("joint", "freejoint") for child in inside)
+        inside += child.children if child.tag in through else []
+    return inside
 
 
 def _joint(mjcf: Mjcf, element: Element, body: int) -> None:
@@ -212,6 +246,9 @@ def _geom(mjcf: Mjcf, element: Element, body: int, childclass: str) -> None:
     if looks.get("type", "sphere") not in SOLIDS or "mesh" in looks:
         if looks.get("mass", looks.get("density", "")).strip() in ZERO:  # a mass overrides a density
             return
+        if not mjcf.bodies[body].moves:
+            mjcf.remark(body, "takes mass from a mesh, which is not read: not counted, so give it in [base.body]")
+            return
         raise InputError(
             f"{place(element)}: body {shown(mjcf.bodies[body].name)} takes its mass from a mesh, and meshes are not "
             "read. Give the body an <inertial>."
@@ -223,19 +260,34 @@ def _geom(mjcf: Mjcf, element: Element, body: int, childclass: str) -> None:
 
 
 def _inertial(mjcf: Mjcf, element: Element, body: int) -> None:
-    where = f"body {shown(mjcf.bodies[body].name)}"
-    kilograms = numbers(element, "mass", 1)[0]
-    full, diagonal = (key in element.attributes for key in ("fullinertia", "diaginertia"))
+    """The body's own numbers, and a stand-in from which MuJoCo finds the inertial frame: it refuses what is odd."""
+    if body == WORLD_BODY:
+        raise InputError(f"{place(element)}: the world has no inertial. Put it into a body.")
+    whose = mjcf.bodies[body]
+    where = f"body {shown(whose.name)}"
+    mass = number(element, "mass")
     moments: Numbers = (0.0,) * 6
+    full, diagonal = (key in element.attributes for key in ("fullinertia", "diaginertia"))
     if full:
         moments = numbers(element, "fullinertia", 6)
     elif diagonal:
         moments = (*numbers(element, "diaginertia", 3), 0.0, 0.0, 0.0)
-    remark = check_inertia(where, kilograms, moments)
-    if remark and mjcf.bodies[body].moves:
-        mjcf.notes.add("body", mjcf.bodies[body].name, remark)
-    if mjcf.bodies[body].moves:
-        mjcf.text.append(f"<inertial{clean_attributes(element)}/>")
+    inertia = tensor(*moments)
+    refuse_negative(where, mass, inertia)
+    mass, inertia, balanced = as_compiled(
+        mass, inertia, least_mass=mjcf.least_mass, least_moment=mjcf.least_moment, balance=mjcf.balance
+    )
+    remark = judge_inertia(where, mass, inertia)
+    if balanced:
+        remark = "principal moments of inertia averaged, as the file's balanceinertia asks"
+    if remark and not whose.from_geoms:
+        mjcf.remark(body, remark)
+    if whose.weighs:
+        clean_attributes(element)
+        given = element.attributes if full else {"diaginertia": "", **element.attributes}
+        stand_in = {key: STAND_IN.get(key, value) for key, value in given.items()}
+        mjcf.text.append(f"<inertial{clean_attributes(replace(element, attributes=stand_in))}/>")
+        whose.own = None if whose.from_geoms else (mass, inertia)
 
 
 def _refuse_more(what: str, count: int, most: int = MOST) -> None:

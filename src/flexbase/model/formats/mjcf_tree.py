@@ -15,6 +15,7 @@ from flexbase.model.formats.chain import (
     AT_ORIGIN,
     NOTHING,
     WORLD,
+    Foot,
     Moving,
     Place,
     RobotFile,
@@ -24,8 +25,9 @@ from flexbase.model.formats.chain import (
     welded,
 )
 from flexbase.model.formats.guard import Element, shown
-from flexbase.model.formats.mjcf import Mjcf, check_mjcf
+from flexbase.model.formats.mjcf import LEAST, Mjcf, check_mjcf
 from flexbase.model.formats.mjcf_couplings import check_couplings
+from flexbase.model.formats.mjcf_drives import drive_notes
 from flexbase.model.formats.notes import Notes
 from flexbase.model.mechanism import Body
 
@@ -42,17 +44,16 @@ def read_mjcf(root: Element, tool: str | None) -> RobotFile:
     notes = [*mjcf.notes.lines(), *check_couplings(mjcf, root, body)]
     if name in names and name in mjcf.sites:
         notes.append(f"{shown(name)} is both a body and a site: the body is taken")
-    if any("armature" in actuator.attributes for found in root.all("actuator") for actuator in found.children):
-        notes.append("armature of actuators ignored: give it as rotor inertia of the joints")
+    notes += drive_notes(root)
     model = _compiled(mjcf)
-    tree, frames = _tree(mjcf, model)
+    tree, frames, feet = _tree(mjcf, model)
     last, place = frames[int(model.body(f"b{body}").id)] if body else (WORLD, AT_ORIGIN)
     if name not in names:
         site = model.site(f"s{list(mjcf.sites).index(name)}")
         place = place.then(Place(_rotation(site.quat), np.array(site.pos)))
     chain = {mjcf.joints[joint] for above in mjcf.ancestors(body) for joint in mjcf.bodies[above].joints}
     notes += _joint_notes(tree, model).lines(lambda what, name: name in chain)
-    return chain_to(tree, last, place, notes)
+    return chain_to(tree, last, place, feet, notes)
 
 
 def _compiled(mjcf: Mjcf) -> Any:
@@ -91,27 +92,39 @@ def _meant(mjcf: Mjcf, found: re.Match[str]) -> str:
             return f"a geom of body {shown(mjcf.bodies[mjcf.weighed[number]].name)}"
 
 
-def _tree(mjcf: Mjcf, model: Any) -> tuple[list[Moving], dict[int, tuple[int, Place]]]:
-    """Moving bodies, a joint each; and where every MuJoCo body sits: the moving body that carries it, and where.
+def _tree(mjcf: Mjcf, model: Any) -> tuple[list[Moving], dict[int, tuple[int, Place]], dict[int, Foot]]:
+    """Moving bodies, a joint each; where every MuJoCo body sits: the moving body that carries it, and where; and what
+    stands still, by the body in the world that it is fixed to.
 
     Several joints of a body become bodies without mass, except for the last one. A joint frame lies at the joint's
     anchor; it is turned back by `ref`, so that joint positions are MuJoCo's qpos.
     """
     tree: list[Moving] = []
     frames: dict[int, tuple[int, Place]] = {0: (WORLD, AT_ORIGIN)}
+    feet: dict[int, Foot] = {}
     for index in range(1, model.nbody):
         parent, at = frames[int(model.body_parentid[index])]
         at = at.then(Place(_rotation(model.body_quat[index]), np.array(model.body_pos[index])))
-        body = Body(float(model.body_mass[index]), np.array(model.body_ipos[index]), _inertia(model, index))
+        number = int(model.body(index).name[1:])
+        body, piece = _body(mjcf, model, index), mjcf.ancestors(number)[0]
         first = int(model.body_jntadr[index])
         for joint in range(first, first + int(model.body_jntnum[index])):
             anchor = np.array(model.jnt_pos[joint]) * (model.jnt_type[joint] == HINGE)
-            tree.append(_moving(mjcf, model, joint, parent, at.then(Place(np.eye(3), anchor))))
+            node = _moving(mjcf, model, joint, parent, at.then(Place(np.eye(3), anchor)))
+            tree.append(replace(node, piece=piece))
             parent, at = len(tree) - 1, Place(np.eye(3), -anchor)
         frames[index] = (parent, at)
         if parent != WORLD:
             tree[parent] = replace(tree[parent], body=welded(tree[parent].body, at.carry(body)))
-    return tree, frames
+        else:
+            feet[piece] = Foot(welded(feet.get(piece, Foot(NOTHING)).body, at.carry(body)))
+    return tree, frames, {piece: Foot(foot.body, _below(mjcf, piece)) for piece, foot in feet.items()}
+
+
+def _below(mjcf: Mjcf, piece: int) -> tuple[str, ...]:
+    """Remarks on the bodies that stand still in a piece of the file."""
+    names = {body.name for number, body in enumerate(mjcf.bodies) if number and mjcf.ancestors(number)[0] == piece}
+    return tuple(mjcf.foot_notes.lines(lambda what, name: name in names))
 
 
 def _moving(mjcf: Mjcf, model: Any, joint: int, parent: int, place: Place) -> Moving:
@@ -167,7 +180,10 @@ def _rotation(quaternion: Any) -> Array:
     )
 
 
-def _inertia(model: Any, index: int) -> Array:
-    """Inertia about the centre of mass, in the body's axes."""
-    turn = _rotation(model.body_iquat[index])
-    return np.array(turn @ np.diag(model.body_inertia[index]) @ turn.T)
+def _body(mjcf: Mjcf, model: Any, index: int) -> Body:
+    """What a body weighs: the file's own numbers, or what MuJoCo makes of its geoms."""
+    own, turn = mjcf.bodies[int(model.body(index).name[1:])].own, _rotation(model.body_iquat[index])
+    mass, inertia = own or (float(model.body_mass[index]), np.diag(model.body_inertia[index]))
+    if own is None and mass <= LEAST:
+        return NOTHING
+    return Body(mass, np.array(model.body_ipos[index]), np.array(turn @ inertia @ turn.T))

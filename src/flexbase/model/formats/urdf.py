@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from flexbase.errors import InputError
 from flexbase.model.formats.fields import Numbers, direction, name_of, number, numbers, refuse_repeated, vector, word
 from flexbase.model.formats.guard import Element, listed, shown
-from flexbase.model.formats.inertias import check_inertia
+from flexbase.model.formats.inertias import judge_inertia, refuse_negative, tensor
 from flexbase.model.formats.notes import Notes
 
 MOST_LINKS = 500
@@ -128,7 +128,8 @@ def _link(element: Element, notes: Notes) -> UrdfLink:
         raise InputError(f"{where}: its <inertial> has no <mass>. Give it.")
     kilograms = number(mass, "value")
     moments = (0.0,) * 6 if inertia is None else tuple(number(inertia, key) for key in MOMENTS)
-    if remark := check_inertia(where, kilograms, moments):
+    refuse_negative(where, kilograms, tensor(*moments))
+    if remark := judge_inertia(where, kilograms, tensor(*moments)):
         notes.add("link", name, remark)
     return UrdfLink(name, kilograms, vector(origin, "xyz", ORIGIN), vector(origin, "rpy", ORIGIN), moments)
 

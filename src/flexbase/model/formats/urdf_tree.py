@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from flexbase.errors import import_extra
-from flexbase.model.formats.chain import Moving, Place, RobotFile, chain_to, choose_tool
+from flexbase.model.formats.chain import Foot, Moving, Place, RobotFile, chain_to, choose_tool
 from flexbase.model.formats.fields import Numbers
 from flexbase.model.formats.guard import Element
 from flexbase.model.formats.notes import Notes
@@ -21,18 +23,19 @@ def read_urdf(robot: Element, tool: str | None) -> RobotFile:
     name = choose_tool(tool, list(urdf.links), urdf.leaves)
     following = check_mimics(urdf, name)
     moved = {joint.name for joint in urdf.path(name)}
-    tree, last, place = _tree(urdf, name)
+    tree, last, place, foot = _tree(urdf, name)
     notes = urdf.notes.lines(lambda what, name: name in moved if what == "joint" else name != urdf.root)
     mimics = Notes()
     for joint in following:
         mimics.add("joint", joint.name, "mimic ignored, because its branch is locked")
-    return chain_to(tree, last, place, [*notes, *mimics.lines()])
+    below = tuple(urdf.notes.lines(lambda what, name: what == "link" and name == urdf.root))
+    return chain_to(tree, last, place, {0: Foot(foot, below)}, [*notes, *mimics.lines()])
 
 
-def _tree(urdf: Urdf, tool: str) -> tuple[list[Moving], int, Place]:
-    """Moving bodies, the number of the one that carries the tool, and where it carries it.
+def _tree(urdf: Urdf, tool: str) -> tuple[list[Moving], int, Place, Body]:
+    """Moving bodies, the number of the one that carries the tool, where it carries it, and what is fixed to the root.
 
-    Pinocchio welds what fixed joints connect. What it welds to the root is fixed to the world and has no say.
+    Pinocchio welds what fixed joints connect.
     """
     pinocchio = import_extra("pinocchio", "robots")
     model = pinocchio.buildModelFromXML(clean_urdf(urdf))
@@ -47,14 +50,19 @@ def _tree(urdf: Urdf, tool: str) -> tuple[list[Moving], int, Place]:
                 revolute=joint.kind != "prismatic",
                 axis=np.array(joint.axis),
                 place=Place(np.array(at.rotation), np.array(at.translation)),
-                body=Body(float(inertia.mass), np.array(inertia.lever), np.array(inertia.inertia)),
+                body=_body(inertia),
                 friction=joint.damping,
                 limits=joint.limits,
             )
         )
     frame = model.frames[model.getFrameId(f"l{list(urdf.links).index(tool)}")]
     last = frame.parentJoint if hasattr(frame, "parentJoint") else frame.parent
-    return tree, int(last) - 1, Place(np.array(frame.placement.rotation), np.array(frame.placement.translation))
+    place = Place(np.array(frame.placement.rotation), np.array(frame.placement.translation))
+    return tree, int(last) - 1, place, _body(model.inertias[0])
+
+
+def _body(inertia: Any) -> Body:
+    return Body(float(inertia.mass), np.array(inertia.lever), np.array(inertia.inertia))
 
 
 def clean_urdf(urdf: Urdf) -> str:
