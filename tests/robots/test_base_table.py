@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -106,12 +107,12 @@ def inertia(mechanism, q):
 
 
 def test_added_joints_stand_before_the_arms(folder):
-    """Names, kinds, unit axes; the file's root link weighs nothing here."""
+    """Names, kinds, unit axes; the file's root link rides on the body."""
     arm = loaded(folder).arm
     assert arm.mechanism.joint_names == ("slide", "twist", "pan", "lift", "elbow")
     assert arm.mechanism.joint_types == ("prismatic", "revolute", "revolute", "revolute", "revolute")
     assert arm.mechanism.axes[:3] == pytest.approx(np.array([[0, 0.6, 0.8], [1 / 3, 2 / 3, -2 / 3], [0, 0, 1]]))
-    assert arm.mechanism.mass.tolist() == [0.0, 20.0, 4.0, 3.0, 2.0]
+    assert arm.mechanism.mass.tolist() == [0.0, 27.0, 4.0, 3.0, 2.0]
     assert (arm.m, arm.n, arm.k) == (2, 3, 3)
     assert np.array_equal(arm.base.stiffness, np.diag([3e5, 2e4]))
     assert np.array_equal(arm.base.damping, np.diag([100.0, 8.0]))
@@ -149,11 +150,110 @@ def test_the_body_is_carried_by_the_last_added_joint(folder):
     assert with_body - without == pytest.approx(added, abs=1e-12)
 
 
+SIDE = """
+  <link name="plate"><inertial><origin xyz="0.1 0.2 0"/><mass value="3"/>
+    <inertia ixx="0.02" iyy="0.03" izz="0.04" ixy="0.001" ixz="0" iyz="0"/></inertial></link>
+  <link name="hook"><inertial><origin xyz="0 0 0.3"/><mass value="2"/>
+    <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="bolts" type="fixed"><parent link="root"/><child link="plate"/><origin xyz="0 0.3 0" rpy="1 2 3"/></joint>
+  <joint name="swing" type="continuous">
+    <parent link="plate"/><child link="hook"/><origin xyz="0.2 0 0" rpy="0.3 0 0"/><axis xyz="1 0 0"/>
+  </joint>
+</robot>"""
+
+
+@pytest.mark.parametrize("body", [BODY, ""], ids=["with a body", "without"])
+@pytest.mark.parametrize("side", ["</robot>", SIDE], ids=["root alone", "with what hangs on it"])
+def test_what_the_file_fixes_to_its_root_rides_along(folder, body, side):
+    """M is that of the same tree on a free root (Pinocchio's free flyer), whose motion the base joints give."""
+    pin = pytest.importorskip("pinocchio")
+    text = changed(ARM, ("</robot>", side))
+    (folder / "arm.urdf").write_text(text)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", FlexbaseWarning)  # the side branch is locked, and said
+        pose, bodiless = loaded(folder, (BODY, body)).at(Q), loaded(folder, (BODY, "")).at(Q)
+    model = pin.buildModelFromXML(text, pin.JointModelFreeFlyer())
+    axis, along = np.array([1.0, 2.0, -2.0]) / 3.0, np.array([0.0, 0.6, 0.8])
+    twist = Rotation.from_rotvec(Q[1] * axis)
+    seat, root = twist * Rotation.from_euler("xyz", [0.4, -0.5, 0.6]), twist.apply([0.1, 0.2, 0.3])
+    q, moving = pin.neutral(model), [model.joints[model.getJointId(name)] for name in ("pan", "lift", "elbow")]
+    q[:7] = [*(Q[0] * along + root), *seat.as_quat()]
+    T = np.zeros((model.nv, 5))
+    T[:3, 0], T[:3, 1] = seat.inv().apply(along), seat.inv().apply(np.cross(axis, root))
+    T[3:6, 1] = seat.inv().apply(axis)
+    for column, (joint, angle) in enumerate(zip(moving, Q[2:], strict=True), start=2):
+        q[joint.idx_q : joint.idx_q + joint.nq] = [np.cos(angle), np.sin(angle)] if joint.nq == 2 else [angle]
+        T[joint.idx_v, column] = 1.0
+    M = np.triu(pin.crba(model, model.createData(), q))
+    theirs = T.T @ (M + np.triu(M, 1).T) @ T
+    assert pytest.approx(theirs, rel=0.0, abs=1e-12) == bodiless.M
+    assert (pose.M - bodiless.M).any() == bool(body)
+
+
+FOOT = """<mujoco>
+  <compiler angle="degree"/>
+  <worldbody>
+    <geom type="box" size="1 1 1"/>
+    <body name="table"><geom type="mesh"/><inertial pos="0 0 0" mass="99" diaginertia="1 1 1"/></body>
+    <body name="foot" pos="0 0 1" euler="0 0 90">
+      <inertial pos="0.1 0 0" mass="6" diaginertia="0.1 0.2 0.25"/>
+      <body name="block" pos="0 0 0.5"><geom type="box" size="0.1 0.2 0.3" mass="2"/></body>
+      <body name="arm" pos="0 0 0.2"><joint name="a" axis="0 1 0"/><inertial pos="1 0 0" mass="1" diaginertia="1 1 1"/>
+        <body name="hand"><joint name="b" axis="0 1 0"/><inertial pos="1 0 0" mass="1" diaginertia="1 1 1"/></body>
+      </body>
+      <body name="other"><joint name="c" axis="0 1 0"/><inertial pos="0 0 1" mass="4" diaginertia="1 1 1"/></body>
+    </body>
+    <body name="second"><joint name="d"/><inertial pos="0 0 1" mass="50" diaginertia="1 1 1"/></body>
+  </worldbody>
+</mujoco>
+"""
+ON_FOOT = (
+    f'{TOP}[robot]\nfile = "arm.xml"\ntool = "hand"\n[base]\nstiffness = [9e4]\ndamping = [30.0]\n'
+    '[[base.joint]]\nname = "twist"\ntype = "revolute"\naxis = [0, 0, 1]\n'
+    '[base.mount]\nxyz = [1.0, 0.0, 0.0]\n[task]\nrows = ["x"]\n'
+)
+
+
+def test_of_an_mjcf_the_body_that_the_arm_stands_on_rides_along(folder):
+    """With what is fixed to it and what hangs from it; the scenery of the file stays where it is. By hand."""
+    (folder / "arm.xml").write_text(FOOT)
+    with pytest.warns(FlexbaseWarning, match='joints "c", "d": of a side branch'):
+        mechanism = loaded(folder, text=ON_FOOT).arm.mechanism
+    parts = [(6.0, [1.0, 0.1, 1.0], [0.2, 0.1, 0.25]), (4.0, [1.0, 0.0, 2.0], [1.0, 1.0, 1.0])]
+    parts.append((2.0, [1.0, 0.0, 1.5], 2.0 / 3.0 * np.array([0.1, 0.13, 0.05])))  # the box, turned by 90 degrees
+    com = sum(mass * np.array(at) for mass, at, _ in parts) / 12.0
+    inertia = np.zeros((3, 3))
+    for mass, at, about_com in parts:
+        r = np.array(at) - com
+        inertia += np.diag(about_com) + mass * (r @ r * np.eye(3) - np.outer(r, r))
+    assert mechanism.mass.tolist() == [12.0, 1.0, 1.0]
+    assert mechanism.com[0] == pytest.approx(com)
+    assert mechanism.inertia[0] == pytest.approx(inertia)
+
+
+def test_a_foot_is_remarked_on_only_where_it_moves(folder):
+    """A mesh that nobody reads, a placeholder: said where base joints are added below, of no interest otherwise."""
+    mesh = ('<geom type="box" size="0.1 0.2 0.3" mass="2"/>', '<geom type="mesh" mesh="m"/>')
+    (folder / "arm.xml").write_text(changed(FOOT, mesh, ("0.1 0.2 0.25", "0 0 0")))
+    with pytest.warns(FlexbaseWarning) as said:
+        loaded(folder, text=ON_FOOT)
+    texts = {str(one.message) for one in said}
+    assert 'arm.xml: body "foot": a mass without inertia (a placeholder?), taken as a point mass' in texts
+    assert (
+        'arm.xml: body "block": takes mass from a mesh, which is not read: not counted, so give it in [base.body]'
+        in texts
+    )
+    with pytest.warns(FlexbaseWarning) as said:
+        loaded(folder, text=f'{TOP}[robot]\nfile = "arm.xml"\ntool = "hand"\n[task]\nrows = ["x"]\n')
+    assert not any('"foot"' in str(one.message) or '"block"' in str(one.message) for one in said)
+
+
 def test_joints_of_the_file_can_be_the_base(folder):
     """`joints = ["pan"]` and the same joint added below the rest of the arm are the same machine."""
     springs, rows = "stiffness = [2e4]\ndamping = [0]\n", '[task]\nrows = ["x", "z"]\n'
     own = loaded(folder, text=f'{TOP}{ROBOT}\n[base]\njoints = ["pan"]\n{springs}{rows}')
-    rest = ARM[: ARM.index('  <link name="root">')] + ARM[ARM.index('  <link name="one">') :]
+    root = '  <link name="one"/>\n'
+    rest = ARM[: ARM.index('  <link name="root">')] + root + ARM[ARM.index('  <link name="two">') :]
     rest = rest[: rest.index('  <joint name="pan"')] + rest[rest.index('  <joint name="lift"') :]
     (folder / "rest.urdf").write_text(rest)
     added = (

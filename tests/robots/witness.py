@@ -66,7 +66,7 @@ class Witness:
         return model, self._frame(model, parent, placed([length, 0, 0], [0, 0, 0]))
 
     def _mounted(self, robot: dict[str, Any], base: dict[str, Any]) -> tuple[pin.Model, int]:
-        """The added joints and their body; then the arm as Pinocchio reads it, but for what its root link weighs."""
+        """The added joints and their body; then the arm as Pinocchio reads it, its root link welded to the body."""
         model, parent = pin.Model(), 0
         kinds = {"revolute": pin.JointModelRevoluteUnaligned, "prismatic": pin.JointModelPrismaticUnaligned}
         for joint in base["joint"]:
@@ -78,7 +78,6 @@ class Witness:
         mount = base["mount"]
         seat = self._frame(model, parent, placed(mount["xyz"], mount.get("rpy", [0, 0, 0])), "seat")
         arm = pin.buildModelFromUrdf(str(LIBRARY / robot["file"]))
-        arm.inertias[0] = pin.Inertia.Zero()  # the project's body stands for the arm's foot
         whole = pin.appendModel(model, arm, seat, pin.SE3.Identity())
         return whole, whole.getFrameId(robot["tool"])
 

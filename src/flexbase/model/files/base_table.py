@@ -13,6 +13,7 @@ from flexbase.errors import FlexbaseWarning, InputError, nearest_name
 from flexbase.model.base import Base, make_base
 from flexbase.model.files.robot_table import inertia_matrix
 from flexbase.model.files.schema import BaseTable
+from flexbase.model.formats.chain import AT_ORIGIN, NOTHING, Foot, Place, welded
 from flexbase.model.mechanism import Body, Mechanism
 
 MOST_JOINTS = 6
@@ -20,10 +21,11 @@ InertiaAt = Callable[[Mechanism, Array], Array]
 
 
 def base_of(
-    table: BaseTable, mechanism: Mechanism, source: str, inertia_at: InertiaAt | None
+    table: BaseTable, mechanism: Mechanism, foot: Foot, source: str, inertia_at: InertiaAt | None
 ) -> tuple[Mechanism, Base]:
     """The chain with the base's own joints put before it, and the base.
 
+    foot : what the robot stands on in its file; it moves where joints are added below
     inertia_at : M at a configuration, for a base that is given by frequencies
     Raises InputError.
     """
@@ -33,7 +35,7 @@ def base_of(
     if not table.joint and (table.body or table.mount):
         raise InputError(f"{where}body and mount belong to added joints. Add [[base.joint]], or remove them.")
     if table.joint:
-        mechanism = _with_added_joints(table, mechanism, source)
+        mechanism = _with_added_joints(table, mechanism, foot, source)
     names, m = list(mechanism.joint_names), len(table.joints) or len(table.joint)
     if table.joints:
         _check_first(table.joints, names, where)
@@ -56,18 +58,20 @@ def _check_first(joints: list[str], names: list[str], where: str) -> None:
         )
 
 
-def _with_added_joints(table: BaseTable, arm: Mechanism, source: str) -> Mechanism:
+def _with_added_joints(table: BaseTable, arm: Mechanism, foot: Foot, source: str) -> Mechanism:
     added = len(table.joint)
     names = (*(joint.name for joint in table.joint), *arm.joint_names)
     for name in names:
         if names.count(name) > 1:
             raise InputError(f'{source}, [[base.joint]] name: "{name}" is given twice. Rename one.')
-    body, mount = _body(table, source), _mount(table, source)
+    for note in foot.notes:
+        warnings.warn(note, FlexbaseWarning, stacklevel=2)
+    mount = _mount(table, source)
+    body = welded(_body(table, source), mount.carry(foot.body))
     placement_rotation, placement_position = arm.placement_rotation.copy(), arm.placement_position.copy()
-    placement_position[0] = mount[1] + mount[0] @ placement_position[0]
-    placement_rotation[0] = mount[0] @ placement_rotation[0]
-    nothing = Body(0.0, np.zeros(3), np.zeros((3, 3)))
-    bodies = [nothing] * (added - 1) + [body]
+    placement_position[0] = mount.position + mount.rotation @ placement_position[0]
+    placement_rotation[0] = mount.rotation @ placement_rotation[0]
+    bodies = [NOTHING] * (added - 1) + [body]
     return Mechanism(
         joint_names=names,
         joint_types=(*(joint.type for joint in table.joint), *arm.joint_types),
@@ -95,18 +99,19 @@ def _axis(axis: list[float], number: int, source: str) -> Array:
 
 def _body(table: BaseTable, source: str) -> Body:
     if table.body is None:
-        return Body(0.0, np.zeros(3), np.zeros((3, 3)))
+        return NOTHING
     where = f"{source}, [base.body] "
     com = check_length(f"{where}com", table.body.com, 3, "x y z")
     return Body(table.body.mass, com, inertia_matrix(f"{where}inertia", table.body.inertia))
 
 
-def _mount(table: BaseTable, source: str) -> tuple[Array, Array]:
+def _mount(table: BaseTable, source: str) -> Place:
     if table.mount is None:
-        return np.eye(3), np.zeros(3)
+        return AT_ORIGIN
     where = f"{source}, [base.mount] "
     rpy = check_length(f"{where}rpy", table.mount.rpy, 3, "roll pitch yaw")
-    return Rotation.from_euler("xyz", rpy).as_matrix(), check_length(f"{where}xyz", table.mount.xyz, 3, "x y z")
+    xyz = check_length(f"{where}xyz", table.mount.xyz, 3, "x y z")
+    return Place(Rotation.from_euler("xyz", rpy).as_matrix(), xyz)
 
 
 def _springs(

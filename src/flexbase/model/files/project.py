@@ -94,8 +94,8 @@ def parse_project(
 
 def _build(project: ProjectFile, source: str, inertia_at: InertiaAt | None, folder: Path | None) -> MountedArm:
     table = project.base or BaseTable()
-    mechanism = mechanism_of(project.robot, len(table.joints), source, folder)
-    mechanism, base = base_of(table, mechanism, source, inertia_at)
+    mechanism, foot = mechanism_of(project.robot, len(table.joints), source, folder)
+    mechanism, base = base_of(table, mechanism, foot, source, inertia_at)
     if base.m == 0:
         warnings.warn(f"{source}: no [base] joints: a rigid base, without modes.", FlexbaseWarning, stacklevel=2)
     task = _task(project, mechanism.N - base.m, source)
@@ -106,7 +106,7 @@ def _build(project: ProjectFile, source: str, inertia_at: InertiaAt | None, fold
 def _bare(path: Path) -> MountedArm:
     """A robot file without a project: a rigid base, and as many task rows as the arm can move."""
     robot = RobotTable(file=path.name)
-    arm = mechanism_of(robot, 0, str(path), path.parent)
+    arm, _ = mechanism_of(robot, 0, str(path), path.parent)
     rows = TaskTable.model_validate({"rows": list(ROWS[: min(arm.N, len(ROWS))])})
     return _build(ProjectFile(name=path.stem, robot=robot, task=rows), str(path), None, path.parent)
 

@@ -12,12 +12,13 @@ from flexbase.checks import Array, check_length
 from flexbase.errors import FlexbaseWarning, InputError
 from flexbase.model.files.planar import planar
 from flexbase.model.files.schema import RobotTable
+from flexbase.model.formats.chain import NOTHING, Foot
 from flexbase.model.formats.robot import read_robot_file
 from flexbase.model.mechanism import Body, Mechanism, with_payload
 
 
-def mechanism_of(table: RobotTable, base_joints: int, source: str, folder: Path | None) -> Mechanism:
-    """The robot's chain, the first `base_joints` of it passive.
+def mechanism_of(table: RobotTable, base_joints: int, source: str, folder: Path | None) -> tuple[Mechanism, Foot]:
+    """The robot's chain, the first `base_joints` of it passive; and what it stands on in its file.
 
     folder : where the project file lies; robot files are read from there and below, nowhere else
     Raises InputError, MissingExtra.
@@ -29,9 +30,9 @@ def mechanism_of(table: RobotTable, base_joints: int, source: str, folder: Path 
             raise InputError(f"{source}, [robot] tool: planar links end in their tool. Remove the key.")
         if table.file_friction:
             raise InputError(f"{source}, [robot] file_friction: there is no robot file. Give friction instead.")
-        mechanism = planar(table.links, source)
+        mechanism, foot = planar(table.links, source), Foot(NOTHING)
     else:
-        mechanism = _from_file(table, source, folder, base_joints)
+        mechanism, foot = _from_file(table, source, folder, base_joints)
     if table.payload is not None:
         where = f"{source}, [robot.payload] "
         payload = Body(
@@ -41,11 +42,12 @@ def mechanism_of(table: RobotTable, base_joints: int, source: str, folder: Path 
         )
         mechanism = with_payload(mechanism, payload)
     n = max(mechanism.N - base_joints, 0)
-    return replace(
+    mechanism = replace(
         mechanism,
         friction=_for_the_arm(f"{source}, [robot] friction", table.friction, n, mechanism.friction),
         armature=_for_the_arm(f"{source}, [robot] rotor_inertia", table.rotor_inertia, n, mechanism.armature),
     )
+    return mechanism, foot
 
 
 def _for_the_arm(name: str, given: list[float] | None, n: int, otherwise: Array) -> Array:
@@ -69,11 +71,15 @@ def inertia_matrix(name: str, numbers: list[float]) -> Array:
     return inertia
 
 
-def _from_file(table: RobotTable, source: str, folder: Path | None, base_joints: int) -> Mechanism:
+def _from_file(table: RobotTable, source: str, folder: Path | None, base_joints: int) -> tuple[Mechanism, Foot]:
     file = str(table.file)
     if folder is None:
         raise InputError(f"{source}, [robot] file: a project given as text has no folder. Save it as a file.")
-    found = read_robot_file(Path(file), table.tool, folder=folder)
+    try:
+        found = read_robot_file(Path(file), table.tool, folder=folder)
+    except InputError as fault:
+        bare = Path(source).name == file
+        raise fault if bare else InputError(f"{source}, [robot] file: {fault}") from fault
     for note in (note for note in found.notes if not (table.file_friction and "file_friction" in note)):
         warnings.warn(f"{file}: {note}", FlexbaseWarning, stacklevel=2)
     if found.stiffness.any():
@@ -84,4 +90,5 @@ def _from_file(table: RobotTable, source: str, folder: Path | None, base_joints:
             stacklevel=2,
         )
     friction = np.where(np.arange(found.mechanism.N) < base_joints, 0.0, found.friction * table.file_friction)
-    return replace(found.mechanism, armature=found.armature, friction=friction)
+    foot = found.foot._replace(notes=tuple(f"{file}: {note}" for note in found.foot.notes))
+    return replace(found.mechanism, armature=found.armature, friction=friction), foot
