@@ -13,6 +13,7 @@ from flexbase.errors import InputError, nearest_name
 
 Array = NDArray[np.float64]
 Choice = TypeVar("Choice")
+FARTHEST = 1e6  # rad or m of a joint or a target: beyond, sine and cosine lose their digits
 
 
 def finite_array(name: str, value: ArrayLike) -> Array:
@@ -45,6 +46,16 @@ def check_length(name: str, value: ArrayLike, length: int, meaning: str) -> Arra
     return array
 
 
+def check_within(name: str, array: Array, most: float, unit: str) -> Array:
+    """Return an array whose entries are at most `most` in size. Raises InputError naming the largest and the bound."""
+    if array.size and np.abs(array).max() > most:
+        worst = array.flat[np.abs(array).argmax()]
+        raise InputError(
+            f"{name}: {worst:g} is beyond the largest value that is read, {most:g} {unit}. Give a smaller one."
+        )
+    return array
+
+
 def check_symmetric(name: str, matrix: Array, unit: str) -> Array:
     """Return a symmetric matrix, exactly so. Raises InputError where it is not symmetric to rounding."""
     gap = float(np.max(np.abs(matrix - matrix.T), initial=0.0))
@@ -63,9 +74,11 @@ def square_or_diagonal(name: str, value: ArrayLike, size: int, unit: str) -> Arr
     """Return a symmetric (size, size) matrix from a vector (its diagonal) or from a full matrix."""
     array = finite_array(name, value)
     if array.ndim <= 1:
-        array = np.diag(check_length(name, array, size, f"one for each of {size}, or a full matrix"))
+        array = np.diag(check_length(name, array, size, "one for each joint or task row, or a full matrix"))
     if array.shape != (size, size):
-        raise InputError(f"{name}: shape {array.shape} given, ({size}, {size}) or {size} numbers needed.")
+        raise InputError(
+            f"{name}: shape {array.shape} given, ({size}, {size}) or {size} number{'s' * (size != 1)} needed."
+        )
     return check_symmetric(name, array, unit)
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexbase.checks import Array, check_length, finite_array
+from flexbase.checks import FARTHEST, Array, check_length, check_within, finite_array
 from flexbase.dynamics.inertia import mass_matrix
 from flexbase.dynamics.inverse_kinematics import arm_angles
 from flexbase.dynamics.kinematics import Frames, forward, task_jacobian
@@ -43,7 +43,7 @@ class Plant:
 
         Under gravity the base sags from its equilibrium. Raises InputError, SingularArm.
         """
-        given = np.atleast_1d(finite_array("joints", joints))
+        given = check_within("joints", np.atleast_1d(finite_array("joints", joints)), FARTHEST, "rad or m")
         m, n, N = self.arm.m, self.arm.n, self.arm.N
         if given.shape not in ((n,), (N,)):
             raise InputError(
@@ -61,6 +61,7 @@ class Plant:
         Raises Unreachable with the distance that is missing, SingularArm, InputError.
         """
         wanted = check_length("tip", target, self.arm.k, f"one for each task row, {' '.join(self.arm.task.rows)}")
+        check_within("tip", wanted, FARTHEST, "rad or m")
         side = check_branch(branch or self.arm.task.branch)
         _check_turnable(self.arm)
         centre = None if near is None else check_length("near", near, self.arm.n, "one for each arm joint")

@@ -153,6 +153,29 @@ def test_closed_pipe_is_quiet() -> None:
     assert process.wait() == 141
 
 
+FULL = Path("/dev/full")
+
+
+@pytest.mark.skipif(not FULL.exists(), reason="needs the device that is always full")
+@pytest.mark.parametrize("words", [["robots"], ["modes", "ueda2003", "--tip", TIP, "--json"], ["--help"]])
+def test_a_full_disk_is_exit_74(words: list[str]) -> None:
+    """One line that says so: no traceback, nothing from the interpreter as it leaves."""
+    with FULL.open("w") as full:
+        found = subprocess.run([*FLEXBASE, *words], stdout=full, stderr=subprocess.PIPE, text=True)
+    assert found.returncode == 74
+    assert found.stderr.startswith("error: standard output cannot be written (No space left on device). ")
+    assert len(found.stderr.splitlines()) == 1
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs a POSIX shell")
+def test_closed_streams_are_exit_74() -> None:
+    command = shlex.join([*FLEXBASE, "robots"])
+    found = subprocess.run(["sh", "-c", f"{command} >&-"], capture_output=True, text=True)
+    assert (found.returncode, found.stdout) == (74, "")
+    assert found.stderr == "error: standard output cannot be written (it is closed). Make room, or send it elsewhere.\n"
+    assert subprocess.run(["sh", "-c", f"{command} >&- 2>&-"], capture_output=True).returncode == 74
+
+
 def test_narrow_encoding_is_no_fault() -> None:
     found = subprocess.run(
         [*FLEXBASE, "modes", "ueda2003", "--tip", TIP], capture_output=True, env={"PYTHONIOENCODING": "ascii"}

@@ -40,12 +40,12 @@ KEYS = words(
     "name class childclass type value xyz rpy link joint joint1 joint2 body1 body2 site1 mass diaginertia fullinertia "
     "pos quat euler axisangle zaxis xyaxes axis ref range limited armature damping stiffness springref springdamper "
     "size fromto density group file mesh ixx iyy izz ixy lower upper angle eulerseq inertiafromgeom balanceinertia "
-    "boundmass settotalmass multiplier offset mocap active coef user"
+    "boundmass boundinertia settotalmass multiplier offset mocap active coef user kp gainprm plugin viscosity wind"
 )
 TAGS = words(
     "robot link joint inertial mass inertia origin axis parent child limit dynamics mimic visual mujoco worldbody body "
     "frame geom site freejoint default compiler equality weld connect tendon fixed spatial include plugin composite "
-    "flexcomp replicate attach asset extension actuator option"
+    "flexcomp replicate attach asset extension actuator option position general instance"
 )
 SNIPPETS = [
     b"<!DOCTYPE r [<!ENTITY a 'x'><!ENTITY b '&a;&a;&a;'>]>",

@@ -13,7 +13,7 @@ from cyclopts import CycloptsError
 from flexbase.cli.usage import command_line_fault
 from flexbase.errors import FlexbaseError, FlexbaseWarning, Infeasible
 
-NO, WRONG, BROKEN = 1, 2, 70  # the answer is no; the input is wrong; flexbase itself is
+NO, WRONG, BROKEN, NO_OUTPUT = 1, 2, 70, 74  # the answer is no; the input is wrong; flexbase itself is; a full disk
 TRACEBACK = "FLEXBASE_TRACEBACK"  # environment variable: let faults of flexbase itself through
 
 
@@ -25,6 +25,10 @@ def report(fault: Exception, commands: Sequence[str]) -> int:
         return _say("error", str(fault), NO if isinstance(fault, Infeasible) else WRONG)
     if isinstance(fault, MemoryError):
         return _say("error", f"not enough memory: {fault}. Ask for fewer cells or samples.", WRONG)
+    if isinstance(fault, OSError) and fault.filename is None:
+        silence_stdout()
+        why = f"standard output cannot be written ({fault.strerror})"
+        return _say("error", f"{why}. Make room, or send it elsewhere.", NO_OUTPUT)
     if os.environ.get(TRACEBACK):
         raise fault
     what = f"{type(fault).__name__}: {fault}"
@@ -48,12 +52,16 @@ def one_line_warnings() -> Iterator[None]:
 
 
 def silence_stdout() -> None:
-    """The reader has gone (`flexbase ... | head -1`): nothing more can or need be said."""
+    """The reader has gone (`flexbase ... | head -1`) or the disk is full: nothing more can or need be said."""
+    if sys.stdout is None:
+        return
     devnull = os.open(os.devnull, os.O_WRONLY)
     os.dup2(devnull, sys.stdout.fileno())
 
 
 def _say(kind: str, text: str, status: int) -> int:
+    if sys.stderr is None:
+        return status
     encoding = sys.stderr.encoding or "utf-8"
     line = f"{kind}: {' '.join(text.split())}"
     print(line.encode(encoding, "backslashreplace").decode(encoding), file=sys.stderr)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import sys
 from collections.abc import Sequence
 
@@ -29,7 +30,8 @@ EPILOGUE = """Examples:
   flexbase design ueda2003 --tip 0.33,-0.25 --out compensator.json
 
 ROBOT is a bundled name (flexbase robots) or the path of a project file.
-Exit status: 0 good, 1 the answer is no, 2 the input is wrong."""
+Exit status: 0 good, 1 the answer is no, 2 the input is wrong, 74 no room for
+the output, 70 flexbase itself failed."""
 
 app = App(
     name="flexbase",
@@ -55,6 +57,8 @@ def run(arguments: Sequence[str]) -> int:
     """Run one command line; returns the exit status. No fault leaves as a traceback."""
     with one_line_warnings():
         try:
+            if sys.stdout is None:  # closed by the caller
+                raise OSError(errno.EBADF, "it is closed")
             status = app(list(arguments), exit_on_error=False, print_error=False)
             sys.stdout.flush()
         except KeyboardInterrupt:

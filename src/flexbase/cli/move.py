@@ -7,8 +7,10 @@ from typing import Annotated, Any
 
 from cyclopts import Group, Parameter
 
+from flexbase.checks import choose
 from flexbase.cli.options import option
 from flexbase.cli.words import number
+from flexbase.simulate.engines import ENGINES
 from flexbase.simulate.run import SELF_MOTION
 
 RUN = Group("Run", sort_key=12)
@@ -30,9 +32,11 @@ class RunOptions:
         float, option(number, "W", "redundant arms: frequency of the null-space damping [rad/s], 20; 0: none")
     ] = SELF_MOTION
     engine: Annotated[
-        str, Parameter(name="--plant", metavar="NAME", help="physics: builtin (if left out) or mujoco")
+        str,
+        Parameter(name="--plant", metavar="NAME", help="physics: builtin (if left out) or mujoco; engine= in Python"),
     ] = "builtin"
 
     def given(self) -> dict[str, Any]:
-        """All of them, for `simulate`."""
+        """All of them, for `simulate`. Raises InputError."""
+        choose("--plant", self.engine, ENGINES)
         return asdict(self)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
 from cyclopts import Group, Parameter, Token
+
+from flexbase.errors import InputError
 
 
 def option(
@@ -30,6 +33,15 @@ def option(
     if group is not None:  # cyclopts hides an option whose group is given as None
         word["group"] = group
     return Parameter(name, converter=convert, metavar=metavar, help=text, negative=(), **word)
+
+
+@contextmanager
+def blaming(option: str) -> Iterator[None]:
+    """Within, a fault of the library names the option that brought it."""
+    try:
+        yield
+    except InputError as fault:
+        raise type(fault)(f"{option}: {str(fault).removeprefix('tip: ')}") from fault
 
 
 Json = Annotated[bool, Parameter(help="one JSON document on stdout, nothing else")]

@@ -11,7 +11,7 @@ from cyclopts import Group, Parameter
 from rich.console import RenderableType
 
 from flexbase.cli.digits import listed
-from flexbase.cli.options import option
+from flexbase.cli.options import blaming, option
 from flexbase.cli.show import facts
 from flexbase.cli.words import Vector, numbers, sign
 from flexbase.control.compensator import Compensator, load_compensator
@@ -56,18 +56,18 @@ class PoseOptions:
 
 def tip_pose(plant: Plant, option: str, tip: Vector, elbow: str | None, near: Pose | Compensator | None = None) -> Pose:
     """The pose at a tip target, of several the nearest to `near`; a fault names the option. Raises InputError."""
-    try:
+    with blaming(option):
         return plant.at_tip(tip, elbow, near.q[plant.arm.m :] if near and len(near.q) == plant.arm.N else None)
-    except InputError as fault:
-        raise type(fault)(f"{option}: {str(fault).removeprefix('tip: ')}") from fault
 
 
 def compensator_of(plant: Plant, path: Path | None) -> Compensator | None:
     """The compensator in a file, or None. Warns where it was made for another robot. Raises InputError."""
-    found = None if path is None else load_compensator(path)
-    if found is not None and found.robot != plant.name:
-        text = f'{path}: designed for "{found.robot}", used on "{plant.name}".'
-        warnings.warn(text, FlexbaseWarning, stacklevel=2)
+    if path is None:
+        return None
+    with blaming("--compensator"):
+        found = load_compensator(path)
+    if found.robot != plant.name:
+        warnings.warn(f'{path}: designed for "{found.robot}", used on "{plant.name}".', FlexbaseWarning, stacklevel=2)
     return found
 
 

@@ -13,6 +13,7 @@ from flexbase.checks import Array, check_symmetric, finite_array
 from flexbase.errors import InputError
 
 FORMAT = "flexbase compensator 1"
+MEND = "Give a file that `flexbase design --out` or `Compensator.save` wrote."
 
 
 @dataclass(frozen=True)
@@ -91,20 +92,20 @@ def load_compensator(path: str | Path) -> Compensator:
     try:
         document = json.loads(Path(path).read_text(encoding="utf-8"))
     except OSError as fault:
-        raise InputError(f"{path}: cannot be read ({fault.strerror}).") from fault
+        raise InputError(f"{path}: cannot be read ({fault.strerror}). {MEND}") from fault
+    except json.JSONDecodeError as fault:
+        raise InputError(f"{path}: not valid JSON, line {fault.lineno}, column {fault.colno}. {MEND}") from fault
     except (ValueError, RecursionError) as fault:
-        raise InputError(
-            f"{path}: not valid JSON ({fault}). Give a file that `flexbase design --out` wrote."
-        ) from fault
+        raise InputError(f"{path}: not a JSON text. {MEND}") from fault
     if not isinstance(document, dict) or document.get("format") != FORMAT:
-        raise InputError(f"{path}: not a compensator. Give a file that `flexbase design --out` wrote.")
+        raise InputError(f"{path}: not a compensator. {MEND}")
     try:
         E = np.atleast_2d(finite_array(f"{path}: E", document["E"]))
         facts: dict[str, Any] = {
             key: tuple(v) if isinstance(v, list) else v for key, v in document["certificate"].items()
         }
         if E.ndim != 2 or E.shape[0] != E.shape[1]:
-            raise InputError(f"{path}: E has shape {E.shape}, a square matrix is needed.")
+            raise InputError(f"{path}: E has shape {E.shape}, a square matrix is needed. {MEND}")
         return Compensator(
             str(document["method"]),
             str(document["robot"]),
@@ -113,7 +114,7 @@ def load_compensator(path: str | Path) -> Compensator:
             Certificate(**facts),
         )
     except (KeyError, TypeError, AttributeError) as fault:
-        raise InputError(f"{path}: incomplete compensator ({fault}). Design it again with --out.") from fault
+        raise InputError(f"{path}: a compensator whose entries are missing or unknown. {MEND}") from fault
 
 
 def _shown(value: Any) -> str:

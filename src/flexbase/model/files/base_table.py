@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from flexbase.checks import Array, check_length
+from flexbase.checks import FARTHEST, Array, check_length, check_within
 from flexbase.errors import FlexbaseWarning, InputError, nearest_name
 from flexbase.model.base import Base, make_base
 from flexbase.model.files.robot_table import inertia_matrix
@@ -41,9 +41,15 @@ def base_of(
         _check_first(table.joints, names, where)
     if m > MOST_JOINTS:
         raise InputError(f"{where}joints: {m} passive joints, at most {MOST_JOINTS} are supported.")
+    for key in ("stiffness", "damping", "frequency", "equilibrium"):
+        if not m and getattr(table, key):
+            raise InputError(
+                f"{where}{key}: there are no base joints. Remove the key, or name joints in [base] joints."
+            )
     if m == len(names):
         raise InputError(f"{where}joints: all {m} joints are passive, so no arm is left. Add links.")
     equilibrium = check_length(f"{where}equilibrium", table.equilibrium or [0.0] * m, m, "one for each base joint")
+    check_within(f"{where}equilibrium", equilibrium, FARTHEST, "rad or m")
     stiffness, damping = _springs(table, mechanism, equilibrium, where, inertia_at)
     return mechanism, make_base(stiffness, damping, equilibrium, m, where=where)
 
@@ -121,8 +127,6 @@ def _springs(
     m = len(equilibrium)
     if (table.frequency is None) == (table.stiffness is None) and m:
         raise InputError(f"{where}stiffness: give either stiffness and damping, or frequency and damping_ratio.")
-    if table.frequency is not None and not m:
-        raise InputError(f"{where}frequency: there are no base joints. Remove the key, or add joints.")
     if table.frequency is None:
         if table.damping_ratio is not None or table.reference is not None:
             raise InputError(f"{where}damping_ratio and reference go with frequency. Give damping instead.")
@@ -139,6 +143,7 @@ def _springs(
     if (omega <= 0.0).any() or (zeta < 0.0).any():
         raise InputError(f"{where}frequency: frequencies must be above 0 and damping ratios 0 or more.")
     arm = check_length(f"{where}reference", table.reference or [0.0] * n, n, "one for each arm joint")
+    check_within(f"{where}reference", arm, FARTHEST, "rad or m")
     inertia = np.diag(inertia_at(mechanism, np.concatenate([equilibrium, arm])))[:m]
     stiffness, damping = omega**2 * inertia, 2.0 * zeta * omega * inertia
     warnings.warn(

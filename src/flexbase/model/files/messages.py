@@ -8,7 +8,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from flexbase.errors import nearest_name
-from flexbase.model.files.schema import ProjectFile, shown
+from flexbase.model.files.schema import LARGEST, ProjectFile, shown
 
 
 def first_fault(fault: ValidationError) -> str:
@@ -46,10 +46,21 @@ def _what(error: ErrorDetails) -> str:
             return f"{shown(value)} must be {context['le']:g} or less. Give a smaller number."
         case "finite_number":
             return f"{value} is not finite. Give a finite number."
+        case "float_type" | "int_type" if isinstance(value, int) and not isinstance(value, bool):
+            return f"{shown(value)}, beyond {LARGEST:g}. Give a smaller one."
         case "float_type" | "int_type":
             return f"{shown(value)} is not a number. Give a number in SI units, without quotes."
         case "string_type":
             return f"{shown(value)} is not a string. Put it in quotes."
+        case "string_too_short":
+            return "is empty. Give at least one character."
+        case "bool_type":
+            return f"{shown(value)} is neither true nor false. Give one of them, without quotes."
+        case "too_short":
+            least = context["min_length"]
+            return f"{len(value)} entries given, {least} or more needed. Name at least {least}."
+        case "too_long":
+            return f"{len(value)} entries given, at most {context['max_length']} are supported. Remove some."
         case "list_type":
             return f"{shown(value)} is not a list. Put it in brackets."
         case "model_type" | "dict_type":
@@ -59,7 +70,7 @@ def _what(error: ErrorDetails) -> str:
         case "value_error":
             return f"{context['error']}. Give finite numbers in SI units, in brackets."
         case _:
-            return f"{shown(value)}: {error['msg'][0].lower()}{error['msg'][1:]}."
+            return f"{shown(value)} does not fit here. `flexbase init` writes a project file to compare with."
 
 
 def _valid_keys(tables: tuple[int | str, ...]) -> list[str]:

@@ -83,8 +83,12 @@ def parse_project(
     """
     try:
         tables = tomllib.loads(text)
-    except (ValueError, RecursionError) as fault:
+    except tomllib.TOMLDecodeError as fault:
         raise InputError(f"{source}: not valid TOML: {str(fault)[:200]}.") from fault
+    except ValueError as fault:  # Python's own limit on the digits of an integer
+        raise InputError(f"{source}: an integer with thousands of digits. Give numbers in SI units.") from fault
+    except RecursionError as fault:
+        raise InputError(f"{source}: lists or tables nested too deeply. A project file needs two levels.") from fault
     try:
         project = ProjectFile.model_validate(tables)
     except ValidationError as fault:
