@@ -5,16 +5,17 @@ from pathlib import Path
 import numpy as np
 
 import flexbase as fb
+from flexbase.sweep import save_csv
 
 plant = fb.load("ueda2003")
 chart = fb.sweep(plant, measures=["robustness", "compensability"], over="tip", shape=(200, 200))
-print(chart.summary())
+print(fb.summary(chart))
 
 reached = chart.status == 0
-compensable = chart.values["compensability"][reached] > 0.0
+compensable = chart.compensability.values[reached] > 0.0
 print(f"  compensable: {100.0 * np.mean(compensable):.0f} % of the workspace")
 
-robustness = chart.values["robustness"][..., 0]
+robustness = chart.robustness.values[..., 0]
 print("\nDistance from the robust arm configuration, 0 (near) to 9 (far), y upwards:")
 for row in range(len(robustness) - 1, -1, -12):
     levels = np.minimum(9.99, 10.0 * robustness[row, ::6] / np.nanmin(robustness))
@@ -22,5 +23,5 @@ for row in range(len(robustness) - 1, -1, -12):
 
 out = Path("out/examples")
 out.mkdir(parents=True, exist_ok=True)
-chart.save_csv(out / "map.csv")
+save_csv(chart, out / "map.csv")
 print(f"\nAll cells: {out / 'map.csv'}")

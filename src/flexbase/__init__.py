@@ -22,7 +22,7 @@ from flexbase.model.task import Gains
 from flexbase.plant import Plant, Pose, load
 from flexbase.simulate import Run, simulate
 from flexbase.simulate.mjcf import to_mjcf
-from flexbase.sweep import Chart, sweep
+from flexbase.sweep import open_dataset, summary, sweep
 
 __version__ = "0.1.0"
 
@@ -30,7 +30,6 @@ __all__ = [
     "MEASURES",
     "METHODS",
     "Certificate",
-    "Chart",
     "Compensator",
     "Ellipsoid",
     "FlexbaseError",
@@ -55,8 +54,10 @@ __all__ = [
     "load_compensator",
     "manipulability",
     "modes",
+    "open_dataset",
     "plot",
     "simulate",
+    "summary",
     "sweep",
     "to_mjcf",
 ]

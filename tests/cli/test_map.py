@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import flexbase as fb
+from flexbase.sweep import document
 
 from .conftest import Call
 
@@ -20,7 +21,7 @@ def test_document_is_the_librarys(call: Call, paper: fb.Plant) -> None:
     outcome = call(*SMALL, *words)
     chart = fb.sweep(paper, ["robustness", "alignment"], shape=(9, 7), bounds=[-0.4, 0.8, -0.6, 0.6], branch="-")
     assert outcome.err == ""  # stderr is no terminal: no bar
-    assert outcome.document("map") == chart.to_dict()
+    assert outcome.document("map") == document(chart)
 
 
 @pytest.mark.parametrize("option", ["--measure", "--measures"])
@@ -62,7 +63,7 @@ def test_nothing_in_reach_is_no_fault(call: Call) -> None:
     assert "none" in shown.out
 
 
-@pytest.mark.parametrize(("over", "option"), [("joints", ("--elbow", "-")), ("tip", ("--axes", "q2,q3"))])
+@pytest.mark.parametrize(("over", "option"), [("joints", ("--elbow", "-")), ("samples", ("--elbow", "+"))])
 def test_options_of_the_other_plane_are_refused(call: Call, over: str, option: tuple[str, str]) -> None:
     outcome = call(*SMALL, "--over", over, *option)
     assert (outcome.status, outcome.out) == (2, "")

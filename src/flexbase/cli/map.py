@@ -1,4 +1,4 @@
-"""`flexbase map`: measures over a plane of configurations."""
+"""`flexbase map`: measures over many configurations."""
 
 from __future__ import annotations
 
@@ -6,33 +6,36 @@ from typing import Annotated
 
 from cyclopts import App, Parameter
 
-from flexbase.cli.chart import tables
+from flexbase.cli.chart import check_map_out, tables, write_map
 from flexbase.cli.document import document
+from flexbase.cli.execution import ExecutionOptions
 from flexbase.cli.options import CompensatorFile, Json, option
-from flexbase.cli.out import PICTURES, OutFile, check_out, write_out, written
+from flexbase.cli.out import OutFile, written
 from flexbase.cli.plane import PlaneOptions
 from flexbase.cli.pose import Robot, compensator_of
-from flexbase.cli.progress import progress_bar
+from flexbase.cli.progress import cells_bar
 from flexbase.cli.show import put
 from flexbase.cli.words import Names, names
+from flexbase.measures import MEASURES
 from flexbase.plant import load
+from flexbase.sweep import document as numbers
 from flexbase.sweep import sweep
 
 app = App(
     name="map",
-    help_epilogue="""Examples:
+    help_epilogue=f"""Examples:
   flexbase map ueda2003 --out robustness.png
   flexbase map ueda2003 --measures robustness,alignment --over joints
-  flexbase map ueda2003 --bounds -0.4,0.8,-0.6,0.6 --shape 200,200 -o map.csv
+  flexbase map ueda2003 --shape 10000,10000 --out big.zarr --resume
+  flexbase map ur5e-pedestal --hold 0.4 --vary payload=0:5:6 -o map.nc
 
-Measures: robustness, alignment, turn, frequency, damping, compensability,
-manipulability.""",
+Measures: {", ".join(MEASURES)}.""",
 )
-Out = Annotated[OutFile, Parameter(help="write a picture (.png .svg .pdf), .csv or .json")]
+Out = Annotated[OutFile, Parameter(help="write a picture (.png .svg .pdf .html), .csv, .json, .nc or .zarr")]
 
 
 @app.default
-def map_plane(
+def map_cells(
     robot: Robot,
     /,
     *,
@@ -40,28 +43,34 @@ def map_plane(
         Names, option(names, "NAMES", "with commas; robustness if left out", ("--measures", "--measure"))
     ] = ("robustness",),
     plane: PlaneOptions = PlaneOptions(),  # noqa: B008
+    execution: ExecutionOptions = ExecutionOptions(),  # noqa: B008
     compensator: CompensatorFile = None,
     out: Out = None,
     json: Json = False,
 ) -> None:
     """Measures in every cell, the base at its equilibrium; cells out of reach or singular have none."""
-    check_out(out, (*PICTURES, ".csv", ".json"))
+    check_map_out(out, execution.resume)
     plane.check()
     plant = load(robot)
     used = compensator_of(plant, compensator)
-    with progress_bar() as report:
+    store = out if out and out.suffix.lower() == ".zarr" else None
+    with cells_bar(store) as progress:
         found = sweep(
             plant,
             measures,
             plane.over,
-            plane.shape,  # type: ignore[arg-type]  # the library says what is wrong with other counts
+            plane.shape,
             bounds=plane.bounds,
             branch=plane.elbow,
-            joints=plane.axes,
+            axes=plane.axes,
             hold=plane.hold,
+            vary=dict(plane.vary),
             compensator=used,
-            progress=lambda done, total: report("cells", done, total),
+            sampling=plane.sampling,
+            seed=plane.seed,
+            store=store,
+            progress=progress,
+            **vars(execution),
         )
-    content = found.to_dict() if json or (out and out.suffix.lower() == ".json") else {}
-    write_out(out, "map", found, content)
-    put(document("map", content)) if json else put(*tables(found), *written(out))
+    write_map(out, found)
+    put(document("map", numbers(found))) if json else put(*tables(found), *written(out))

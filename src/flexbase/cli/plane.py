@@ -1,4 +1,4 @@
-"""The plane of a map: which two axes, how far, how fine."""
+"""Where a map looks: which axes, how far, how fine, and what else varies."""
 
 from __future__ import annotations
 
@@ -9,29 +9,32 @@ from cyclopts import Group, Parameter
 
 from flexbase.cli.options import option
 from flexbase.cli.pose import Elbow
-from flexbase.cli.words import Names, Vector, counts, names, numbers
+from flexbase.cli.words import Names, Ranges, Vector, counts, names, numbers, ranges
 from flexbase.errors import InputError
 
-PLANE = Group("Plane", sort_key=10)
+PLANE = Group("Cells", sort_key=10)
 
 
 @Parameter(name="*", group=PLANE)
 @dataclass(frozen=True)
 class PlaneOptions:
-    """Two axes and what stays put."""
+    """Axes and what stays put."""
 
-    over: Annotated[str, Parameter(metavar="NAME", help="tip (if left out) or joints")] = "tip"
-    shape: Annotated[tuple[int, ...], option(counts, "N,N", "cells along each axis; 400,400 if left out")] = (400, 400)
+    over: Annotated[str, Parameter(metavar="NAME", help="tip (if left out), joints, or samples of joints")] = "tip"
+    shape: Annotated[tuple[int, ...] | None, option(counts, "N,N", "cells along each axis; 400,400 if left out")] = None
     bounds: Annotated[
-        Vector | None, option(numbers, "LO,HI,LO,HI", "of the two axes; all that is reached [m, rad]")
+        Vector | None, option(numbers, "LO,HI,LO,HI", "of the axes in turn; all that is reached [m, rad]")
     ] = None
-    axes: Annotated[Names, option(names, "Q,Q", "over joints: which two; the last two if left out")] = ()
-    hold: Annotated[Vector, option(numbers, "NUMBERS", "over tip: the other rows; over joints: all arm joints")] = ()
+    axes: Annotated[Names, option(names, "Q,Q", "which task rows or joints vary; two if left out")] = ()
+    hold: Annotated[Vector, option(numbers, "NUMBERS", "over tip: the other rows; else: all arm joints")] = ()
     elbow: Elbow = None
+    vary: Annotated[
+        Ranges, option(ranges, "NAME=LO:HI:N", "more axes, with commas: stiffness, damping, link_mass, payload")
+    ] = ()
+    sampling: Annotated[str, Parameter(metavar="NAME", help="samples: random (if left out) or halton")] = "random"
+    seed: Annotated[int, Parameter(metavar="N", help="samples: another seed, other samples")] = 0
 
     def check(self) -> None:
-        """Raise InputError where an option belongs to the other plane."""
-        if self.over == "joints" and self.elbow is not None:
+        """Raise InputError where an option belongs to another kind of map."""
+        if self.over != "tip" and self.elbow is not None:
             raise InputError("--elbow: joints are given here, so there is no side to choose. Leave it out.")
-        if self.over == "tip" and self.axes:
-            raise InputError("--axes: names joints, but the map is over the tip. Add --over joints.")

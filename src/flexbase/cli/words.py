@@ -9,6 +9,7 @@ from flexbase.model.task import BRANCHES
 
 Vector = tuple[float, ...]
 Names = tuple[str, ...]
+Ranges = tuple[tuple[str, tuple[float, float, int]], ...]
 
 
 def number(text: str, option: str) -> float:
@@ -44,10 +45,23 @@ def names(text: str, option: str) -> Names:
     return tuple(part.strip() for part in _parts(text, option))
 
 
+def ranges(text: str, option: str) -> Ranges:
+    """Names with a range each, such as stiffness=0.7:1.3:5; the count may be left out. Raises InputError."""
+    found = []
+    for part in _parts(text, option):
+        name, _, given = part.partition("=")
+        ends = given.split(":")
+        if len(ends) not in (2, 3):
+            raise InputError(f'{option}: "{part}" is not NAME=LOW:HIGH:COUNT. Give such as stiffness=0.7:1.3:5.')
+        count = whole(ends[2].strip(), option) if len(ends) == 3 else 2
+        found.append((name.strip(), (number(ends[0], option), number(ends[1], option), count)))
+    return tuple(found)
+
+
 def sign(text: str, option: str) -> str:
-    """A side of the elbow. Raises InputError."""
+    """A side of the elbow, or the three signs of shoulder, elbow and wrist. Raises InputError."""
     if text not in BRANCHES:
-        raise InputError(f'{option}: "{text}" is neither + (0 < elbow angle < pi) nor -.')
+        raise InputError(f'{option}: "{text}" is neither + (0 < elbow angle < pi) nor -, nor three signs such as +-+.')
     return text
 
 

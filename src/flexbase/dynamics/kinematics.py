@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-from flexbase.dynamics.spatial import ZERO_VECTOR, Motion, SpatialInertia, inertia_at_origin
+from flexbase.dynamics.spatial import IDENTITY, ZERO_VECTOR, Motion, SpatialInertia, inertia_at_origin
 from flexbase.model.mechanism import Link, Mechanism
 from flexbase.trace.algebra import (
     Matrix,
@@ -23,8 +23,6 @@ from flexbase.trace.algebra import (
     sin,
     sub,
 )
-
-IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 @dataclass(frozen=True)

@@ -49,6 +49,7 @@ class SpatialInertia(NamedTuple):
 
 
 ZERO_VECTOR: Vector = (0.0, 0.0, 0.0)
+IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 ZERO_MOTION = Motion(ZERO_VECTOR, ZERO_VECTOR)
 
 
@@ -91,7 +92,7 @@ def sum_of_inertias(a: SpatialInertia, b: SpatialInertia) -> SpatialInertia:
     return SpatialInertia(add(a.mass, b.mass), plus(a.first, b.first), matadd(a.second, b.second))
 
 
-def inertia_at_origin(mass: float, com: Vector, inertia: Matrix, rotation: Matrix) -> SpatialInertia:
+def inertia_at_origin(mass: Scalar, com: Vector, inertia: Matrix, rotation: Matrix) -> SpatialInertia:
     """Inertia about the world origin of a body whose frame has `rotation` and whose centre of mass is at `com`."""
     turned = matmul(matmul(rotation, inertia), transpose(rotation))
     square = dot(com, com)
@@ -100,3 +101,8 @@ def inertia_at_origin(mass: float, com: Vector, inertia: Matrix, rotation: Matri
         for i in range(3)
     )
     return SpatialInertia(mass, scale(mass, com), second)
+
+
+def point_mass(mass: Scalar, position: Vector) -> SpatialInertia:
+    """Inertia about the world origin of a mass at a point."""
+    return inertia_at_origin(mass, position, (ZERO_VECTOR,) * 3, IDENTITY)

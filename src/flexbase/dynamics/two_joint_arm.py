@@ -10,6 +10,7 @@ from flexbase.checks import Array
 from flexbase.dynamics.kinematics import forward
 from flexbase.model.mechanism import Mechanism
 from flexbase.model.task import Task
+from flexbase.trace.algebra import Scalar, atan2, larger, smaller, sqrt
 
 
 class TwoJointArm(NamedTuple):
@@ -57,19 +58,26 @@ def two_joint_arm(mechanism: Mechanism, task: Task, base_rest: Array) -> TwoJoin
     )
 
 
-def solve_two_joint_arm(arm: TwoJointArm, x: Array, y: Array, branch: str) -> tuple[Array, Array, Array]:
-    """Joint angles in (-pi, pi] that bring the tip to (x, y), and the elbow's cosine.
+def two_joint_angles(arm: TwoJointArm, x: Scalar, y: Scalar, side: float) -> tuple[Scalar, Scalar, Scalar]:
+    """Joint angles that bring the tip to (x, y), the elbow bent to a side of +1 or -1, and the elbow's cosine.
 
     Out of reach where the cosine leaves [-1, 1]; the angles there are those of the nearest reach.
     """
-    dx, dy = x - arm.shoulder[0], y - arm.shoulder[1]
-    cosine = (dx * dx + dy * dy - arm.upper**2 - arm.fore**2) / (2.0 * arm.upper * arm.fore)
-    elbow = np.arccos(np.clip(cosine, -1.0, 1.0)) * (1.0 if branch == "+" else -1.0)
-    bend = arm.sense * elbow
-    direction = np.arctan2(dy, dx) - np.arctan2(arm.fore * np.sin(bend), arm.upper + arm.fore * np.cos(bend))
+    dx, dy = x - float(arm.shoulder[0]), y - float(arm.shoulder[1])
+    cosine = (dx * dx + dy * dy - (arm.upper**2 + arm.fore**2)) / (2.0 * arm.upper * arm.fore)
+    c = larger(smaller(cosine, 1.0), -1.0)
+    s = side * sqrt((1.0 - c) * (1.0 + c))
+    sine = arm.sense * s
+    direction = atan2(dy, dx) - atan2(arm.fore * sine, arm.upper + arm.fore * c)
     first = arm.sense * (direction - arm.upper_angle)
-    second = elbow - arm.sense * (arm.fore_angle - arm.upper_angle)
-    return _wrapped(first), _wrapped(second), cosine
+    second = atan2(s, c) - arm.sense * (arm.fore_angle - arm.upper_angle)
+    return first, second, cosine
+
+
+def solve_two_joint_arm(arm: TwoJointArm, x: Array, y: Array, branch: str) -> tuple[Array, Array, Array]:
+    """The same for arrays, angles in (-pi, pi]; the branch is the sign of the elbow."""
+    first, second, cosine = two_joint_angles(arm, x, y, -1.0 if branch == "-" else 1.0)
+    return _wrapped(first), _wrapped(second), np.asarray(cosine)
 
 
 def _wrapped(angle: Array) -> Array:

@@ -1,6 +1,15 @@
 """Measures of a configuration, one file each; importing them fills the registry."""
 
-from flexbase.measures import alignment, compensability, frequency, manipulability, robustness, turn
+from flexbase.measures import (
+    alignment,
+    compensability,
+    exact_design,
+    frequency,
+    loop,
+    manipulability,
+    robustness,
+    turn,
+)
 from flexbase.measures.registry import MEASURES, Configuration, Measure
 
 __all__ = [
@@ -9,7 +18,9 @@ __all__ = [
     "Measure",
     "alignment",
     "compensability",
+    "exact_design",
     "frequency",
+    "loop",
     "manipulability",
     "robustness",
     "turn",

@@ -11,7 +11,8 @@ from flexbase.checks import Array
 from flexbase.linear.linearise import HasGain, check_definite_inertia, gain_of
 from flexbase.measures.registry import Configuration, measure
 from flexbase.plant import Pose
-from flexbase.trace.algebra import Scalar, ldl
+from flexbase.trace.algebra import Matrix, Scalar, Vector, absolute, atan2, dot, ldl, norm, scale, select
+from flexbase.trace.eigen import symmetric_eigen
 
 CONVENTIONS = ("force", "torque")
 
@@ -123,3 +124,30 @@ def volume(configuration: Configuration) -> Scalar:
     for pivot in ldl(configuration.reduced.R0)[1]:
         product = product * pivot
     return product
+
+
+@measure(
+    "axis_rotation",
+    unit="rad",
+    purpose="how far E turns the force ellipsoid's longest axis",
+    needs=lambda m, n, k: None if k > 1 else "two task rows",
+)
+def axis_rotation(configuration: Configuration) -> Scalar:
+    """Angle from the original to the compensated longest axis of |f| <= 1.  [U03 §IV C]
+
+    For two task rows counted from the first to the second within (-pi/2, pi/2], otherwise without sign; 0 without a
+    compensator. Undefined, and arbitrary, where the two longest axes are equal.
+    """
+    if configuration.E is None:
+        return 0.0
+    before, after = _longest(configuration.original.R0), _longest(configuration.reduced.R0)
+    cosine = dot(before, after)
+    if len(before) == 2:
+        sine = before[0] * after[1] - before[1] * after[0]
+        return atan2(select(cosine < 0.0, -sine, sine), absolute(cosine))
+    across = [x - y for x, y in zip(after, scale(cosine, before), strict=True)]
+    return atan2(norm(across), absolute(cosine))
+
+
+def _longest(R0: Matrix) -> Vector:
+    return symmetric_eigen(R0).vectors[-1]

@@ -3,23 +3,48 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
-from flexbase.linear.reduced import RealMode, Reduced
+from flexbase.linear.real_modes import real_modes
+from flexbase.linear.reduced import RealMode, Reduced, reduce_arm
+from flexbase.model.task import Gains
 from flexbase.trace.algebra import Matrix, Scalar
 
 
-class Configuration(NamedTuple):
-    """What a measure may read of one configuration (or a batch of them).
+@dataclass(frozen=True)
+class Configuration:
+    """What a measure may read of one configuration (or a batch of them, or a traced one).
 
     M, J : inertia (N x N) and task Jacobian (k x N); m : base joints, which come first
+    stiffness, damping : of the base, Kp and Dp, m x m
+    E : a compensator's gain, n x n, or None
+    gains : of the task-space law, k x k each, or None
     """
 
     M: Matrix
     J: Matrix
     m: int
-    reduced: Reduced
-    modes: tuple[RealMode, ...]
+    stiffness: Matrix
+    damping: Matrix
+    E: Matrix | None = None
+    gains: Gains | None = None
+
+    @cached_property
+    def reduced(self) -> Reduced:
+        """The reduced form under E."""
+        return reduce_arm(self.M, self.J, self.m, self.E)
+
+    @cached_property
+    def original(self) -> Reduced:
+        """The reduced form without a compensator."""
+        return self.reduced if self.E is None else reduce_arm(self.M, self.J, self.m)
+
+    @cached_property
+    def modes(self) -> tuple[RealMode, ...]:
+        """Modes with real shapes, slowest first, under E."""
+        return real_modes(self.reduced, self.stiffness, self.damping)
 
 
 Needs = Callable[[int, int, int], str | None]
@@ -36,6 +61,8 @@ class Measure(NamedTuple):
     zero_is : what its zero means, or None where zero means nothing
     zero_line : another measure that changes its sign, near 0, where this one only touches zero
     needs : of m, n and k (base joints, arm joints, task rows), what is missing for this measure, or None
+    slow : whether it needs eigenvalues of general matrices: NumPy alone, some thousand configurations a second
+    feasible : where it has a value at all: a condition on the configuration; None: everywhere
     """
 
     name: str
@@ -45,6 +72,8 @@ class Measure(NamedTuple):
     zero_is: str | None
     zero_line: str | None
     needs: Needs
+    slow: bool
+    feasible: Callable[[Configuration], Scalar] | None
     run: Callable[[Any], Scalar]
 
 
@@ -60,11 +89,13 @@ def measure(
     zero_is: str | None = None,
     zero_line: str | None = None,
     needs: Needs = _nothing,
+    slow: bool = False,
+    feasible: Callable[[Configuration], Scalar] | None = None,
 ) -> Callable[[Callable[[Any], Scalar]], Callable[[Any], Scalar]]:
     """Register a generic formula under a name."""
 
     def register(run: Callable[[Any], Scalar]) -> Callable[[Any], Scalar]:
-        MEASURES[name] = Measure(name, unit, purpose, per_mode, zero_is, zero_line, needs, run)
+        MEASURES[name] = Measure(name, unit, purpose, per_mode, zero_is, zero_line, needs, slow, feasible, run)
         return run
 
     return register

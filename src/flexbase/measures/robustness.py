@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from flexbase.linear import reduced
 from flexbase.linear.reduced import RealMode
-from flexbase.measures.registry import measure
-from flexbase.trace.algebra import Scalar
+from flexbase.measures.registry import Configuration, measure
+from flexbase.trace.algebra import Scalar, smaller
 
 
 @measure(
@@ -22,3 +22,18 @@ def robustness(mode: RealMode) -> Scalar:
     Assumes a real mode shape (proportional damping, or one base joint).
     """
     return reduced.robustness(mode.a, mode.b)
+
+
+@measure(
+    "worst_robustness",
+    unit="m/(N s^2)",
+    purpose="the smallest w_i of all modes",
+    zero_is="all modes on their robust arm configuration",
+    needs=lambda m, n, k: None if m else "a base joint",
+)
+def worst_robustness(configuration: Configuration) -> Scalar:
+    """min over i of w_i.  [U03 eq 9]"""
+    worst, *others = [robustness(mode) for mode in configuration.modes]
+    for other in others:
+        worst = smaller(worst, other)
+    return worst

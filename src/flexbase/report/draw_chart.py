@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,10 +15,10 @@ from matplotlib.patches import Patch
 from flexbase.checks import Array
 from flexbase.measures import MEASURES
 from flexbase.report.style import BLUE, DIVERGING, HATCH, INK, new_figure
-from flexbase.sweep import Chart
-from flexbase.sweep.chart import INDEFINITE, SINGULAR, STATUS, UNREACHABLE
+from flexbase.sweep.chart import Chart, chart_of
+from flexbase.sweep.status import INDEFINITE, INFEASIBLE, SINGULAR, STATUS, UNREACHABLE
 
-PATTERN = {UNREACHABLE: "///", SINGULAR: "...", INDEFINITE: "xxx"}
+PATTERN = {UNREACHABLE: "///", SINGULAR: "...", INDEFINITE: "xxx", INFEASIBLE: "|||"}
 TAIL = 4.0  # percent of the cells at either end that the colours may leave out
 
 
@@ -33,6 +33,11 @@ class Layer(NamedTuple):
     values: Array
     zero_is: str | None
     zero_line: Array | None = None
+
+
+def draw_dataset(dataset: Any) -> Figure:
+    """All measures of a sweep over two axes. Raises InputError for another number of axes."""
+    return draw_chart(chart_of(dataset))
 
 
 def draw_chart(chart: Chart) -> Figure:
@@ -103,7 +108,7 @@ def _panel(figure: Figure, ax: Axes, chart: Chart, layer: Layer) -> None:
 
 
 def _title(chart: Chart, layer: Layer) -> str:
-    name = f"{chart.plant.name}: {layer.title}{', compensated' if chart.compensated else ''}"
+    name = f"{chart.robot}: {layer.title}{', compensated' if chart.compensated else ''}"
     return name + (f"\nzero: {layer.zero_is}" if layer.zero_is else "")
 
 

@@ -12,7 +12,7 @@ from flexbase.report import panels
 from flexbase.report.arm import joint_points
 from flexbase.simulate import Run
 from flexbase.study.paper import EllipseCell, EllipseField, Example, RobustnessMap, Shaping
-from flexbase.sweep.chart import STATUS
+from flexbase.sweep import STATUS
 
 
 class Numbers(NamedTuple):

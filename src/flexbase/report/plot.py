@@ -14,7 +14,7 @@ from flexbase.control.compensator import Compensator
 from flexbase.errors import InputError
 from flexbase.linear.modal import Modes
 from flexbase.measures.manipulability import Manipulability
-from flexbase.report.draw_chart import draw_chart
+from flexbase.report.draw_chart import draw_chart, draw_dataset
 from flexbase.report.draw_compensator import draw_compensator
 from flexbase.report.draw_manipulability import draw_manipulability
 from flexbase.report.draw_modes import draw_modes
@@ -22,16 +22,18 @@ from flexbase.report.draw_run import draw_run
 from flexbase.report.save import check_picture_path, save_figure
 from flexbase.report.style import styled
 from flexbase.simulate import Run
-from flexbase.sweep import Chart
+from flexbase.sweep.chart import Chart
 
 
 @singledispatch
 def plot(result: object) -> Figure:
-    """A figure of a result: `Modes`, `Compensator`, `Run`, `Chart` or `Manipulability`.
+    """A figure of a result: `Modes`, `Compensator`, `Run`, `Manipulability`, or a sweep's `Dataset`.
 
     The figure belongs to no window: save it with `save_plot`, or show it in a notebook.
     Raises InputError for anything else.
     """
+    if type(result).__module__.startswith("xarray"):  # a sweep; xarray itself takes long to import
+        return styled()(draw_dataset)(result)
     drawable = ", ".join(kind.__name__ for kind in plot.registry if kind is not object)
     raise InputError(f"plot: a {type(result).__name__} cannot be drawn. Give one of {drawable}.")
 

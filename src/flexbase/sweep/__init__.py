@@ -1,6 +1,8 @@
-"""Maps: many configurations at once."""
+"""Sweeps: many configurations at once."""
 
-from flexbase.sweep.chart import STATUS, Axis, Chart
-from flexbase.sweep.run import sweep
+from flexbase.sweep.parameters import PARAMETERS
+from flexbase.sweep.run import open_dataset, sweep
+from flexbase.sweep.status import STATUS
+from flexbase.sweep.summary import document, save_csv, save_netcdf, summary
 
-__all__ = ["STATUS", "Axis", "Chart", "sweep"]
+__all__ = ["PARAMETERS", "STATUS", "document", "open_dataset", "save_csv", "save_netcdf", "summary", "sweep"]

@@ -1,4 +1,4 @@
-"""Configuration -> measures, many at once, in blocks that fit the processor's cache."""
+"""Inputs -> status and measures, many at once: NumPy rows without a warm-up, or a compiled kernel."""
 
 from __future__ import annotations
 
@@ -8,55 +8,69 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexbase.checks import Array
-from flexbase.dynamics.inertia import mass_matrix
-from flexbase.dynamics.kinematics import forward, task_jacobian
-from flexbase.linear.real_modes import real_modes
-from flexbase.linear.reduced import Reduced, reduce_arm
-from flexbase.measures import Configuration, Measure
-from flexbase.model.mounted import MountedArm
-from flexbase.plant import SINGULAR as SINGULAR_RATIO
-from flexbase.sweep.chart import INDEFINITE, OK, SINGULAR
-from flexbase.trace.algebra import Matrix, ldl, stack, unstack
+from flexbase.sweep.question import Question
+from flexbase.sweep.status import OK
+from flexbase.trace.algebra import unstack
+from flexbase.trace.kernel import Kernel, kernel_of
+
+ROWS, COMPILED, AUTO = "rows", "compiled", "auto"
+ENGINES = (AUTO, COMPILED, ROWS)
+ROW_BLOCK = 16384  # configurations evaluated together: their intermediate rows stay in the cache
 
 
 class Block(NamedTuple):
-    """Measures and status of some configurations; values are NaN unless the status is OK."""
+    """Measures and status of some configurations.
+
+    values : a measure's name -> shape (cells,), or (cells, m) for measures of each mode
+    """
 
     values: dict[str, Array]
     status: NDArray[np.int8]
 
 
-def evaluate(arm: MountedArm, joints: Array, measures: list[Measure], E: Array | None) -> Block:
-    """Measures of arm joints, shape (cells, n), with the base at its equilibrium."""
-    status = _status(arm, joints, E)
-    good = status == OK
-    values = {one.name: np.full((len(joints), arm.m) if one.per_mode else len(joints), np.nan) for one in measures}
-    if good.any():
-        M, J, reduced = _reduced(arm, joints[good], E)
-        configuration = Configuration(M, J, arm.m, reduced, real_modes(reduced, arm.base))
-        for one in measures:
-            if one.per_mode:
-                for i, mode in enumerate(configuration.modes):
-                    values[one.name][good, i] = one.run(mode)
-            else:
-                values[one.name][good] = one.run(configuration)
-    return Block(values, status)
+class Engine(NamedTuple):
+    """A question, ready to be asked; `kernel` is None for NumPy rows."""
+
+    question: Question
+    kernel: Kernel | None = None
+
+    @property
+    def name(self) -> str:
+        """ "rows" or "compiled"."""
+        return ROWS if self.kernel is None else COMPILED
+
+    def run(self, inputs: Array, threads: int | None = None) -> Block:
+        """Answers for inputs of shape (inputs, cells)."""
+        question = self.question
+        results = self._results(inputs) if self.kernel is None else self.kernel(inputs, threads=threads)
+        status = results[0].astype(np.int8)
+        values, row = {}, 1
+        for one in question.quick:
+            width = question.width(one)
+            values[one.name] = results[row : row + width].T if one.per_mode else results[row]
+            row += width
+        slow = [one for one in question.measures if one.slow]
+        for one in slow:
+            values[one.name] = np.full(len(status), np.nan)
+        good = np.flatnonzero(status == OK)
+        for begin in range(0, len(good) if slow else 0, ROW_BLOCK):
+            cells = good[begin : begin + ROW_BLOCK]
+            configuration = question.configuration(unstack(inputs[:, cells].T, 1))
+            for one in slow:
+                values[one.name][cells] = one.run(configuration)
+        return Block({one.name: values[one.name] for one in question.measures}, status)
+
+    def _results(self, inputs: Array) -> Array:
+        cells = inputs.shape[1]
+        results = np.empty((1 + sum(map(self.question.width, self.question.quick)), cells))
+        with np.errstate(all="ignore"):  # cells without a value divide by zero; their status says so
+            for begin in range(0, cells, ROW_BLOCK):
+                part = inputs[:, begin : begin + ROW_BLOCK]
+                for row, value in enumerate(self.question(tuple(part))):
+                    results[row, begin : begin + ROW_BLOCK] = value
+        return results
 
 
-def _reduced(arm: MountedArm, joints: Array, E: Array | None) -> tuple[Matrix, Matrix, Reduced]:
-    frames = forward(arm.mechanism, (*arm.base.equilibrium.tolist(), *unstack(joints, 1)))
-    M, J = mass_matrix(frames), task_jacobian(frames, arm.task.indices)
-    return M, J, reduce_arm(M, J, arm.m, None if E is None else E.tolist())
-
-
-def _status(arm: MountedArm, joints: Array, E: Array | None) -> NDArray[np.int8]:
-    """Which configurations can be judged, decided before anything is divided by."""
-    _, J, reduced = _reduced(arm, joints, E)
-    status = np.zeros(len(joints), dtype=np.int8)
-    pivots = [*reduced.pivots, *(ldl(reduced.S)[1] if arm.m else ())]
-    for pivot in pivots:
-        status[np.broadcast_to(np.asarray(pivot) <= 0.0, len(joints))] = INDEFINITE
-    Jv = np.broadcast_to(stack(J)[..., arm.m :], (len(joints), arm.k, arm.n))
-    singular_values = np.linalg.svd(Jv, compute_uv=False)
-    status[singular_values[:, -1] <= SINGULAR_RATIO * singular_values[:, 0]] = SINGULAR
-    return status
+def compiled(question: Question) -> Engine:
+    """The question as machine code, from the cache or traced and compiled now. Raises MissingExtra."""
+    return Engine(question, kernel_of(question, question.inputs, question.recipe))

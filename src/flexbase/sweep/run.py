@@ -1,64 +1,202 @@
-"""Sweep a plant over two axes: the maps of Fig. 6 and 8, and of any other measure."""
+"""Sweep a plant: measures over joints, tip positions, parameters or samples, in blocks, resumable."""
 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from flexbase.checks import choose
-from flexbase.errors import FlexbaseWarning, InputError
+from flexbase.errors import FlexbaseWarning, InputError, MissingExtra
 from flexbase.linear.linearise import HasGain
-from flexbase.measures import MEASURES
+from flexbase.measures import MEASURES, Measure
 from flexbase.model.base import Base
 from flexbase.plant import Plant
-from flexbase.sweep.chart import UNREACHABLE, Chart
-from flexbase.sweep.evaluate import evaluate
-from flexbase.sweep.grid import Grid, joint_grid, tip_grid
+from flexbase.sweep.axis import block_shape, boxes
+from flexbase.sweep.domain import RANDOM, SAMPLINGS, Grid
+from flexbase.sweep.evaluate import AUTO, COMPILED, ENGINES, ROWS
+from flexbase.sweep.executors import Result, by_dask, by_threads
+from flexbase.sweep.grids import Place, Range, joint_place, sample_place, tip_place
+from flexbase.sweep.job import Job, Work
+from flexbase.sweep.layout import empty, fields_of, to_dataset
+from flexbase.sweep.question import Question
+from flexbase.sweep.recipe import recipe_of
+from flexbase.sweep.store import FINISHED, identity, open_store
 
-BLOCK = 16384  # configurations evaluated together: their intermediate rows stay in the cache
-LARGEST = 4_000_000  # cells
+LARGEST = 20_000_000  # cells that are kept in memory; more need a store
+WORTH_COMPILING = 200_000  # cells from which a kernel gains more than the half second that it takes to make
+QUICK_BLOCK, SLOW_BLOCK = 1 << 20, 1 << 14  # cells a block: compiled, or with steps in NumPy
+Progress = Callable[[int, int], None]
 
 
 def sweep(
     plant: Plant,
     measures: Sequence[str] = ("robustness",),
     over: str = "tip",
-    shape: tuple[int, int] = (400, 400),
+    shape: Sequence[int] | None = None,
     *,
     bounds: Sequence[float] | None = None,
     branch: str | None = None,
-    joints: Sequence[str] = (),
+    axes: Sequence[str] = (),
     hold: Sequence[float] = (),
+    vary: Mapping[str, Range] | None = None,
     compensator: HasGain | None = None,
-    progress: Callable[[int, int], None] = lambda done, total: None,
-) -> Chart:
-    """Measures over the tip's plane or over two arm joints, the base at its equilibrium.
+    sampling: str = RANDOM,
+    seed: int = 0,
+    engine: str = AUTO,
+    store: str | Path | None = None,
+    resume: bool = False,
+    scheduler: str | None = None,
+    workers: int | None = None,
+    progress: Progress = lambda done, total: None,
+) -> Any:
+    """Measures over many configurations, the base at its equilibrium; an `xarray.Dataset`.
 
-    Modes are those of `real_modes`: exact for one base joint and for proportional damping.
+    Modes are those of `real_modes`: exact for one base joint and for proportional damping. Gravity's sag and stiffness
+    and joint friction are left out.
 
-    over : "tip", the first two task rows; or "joints", two arm joints (`joints` names them; if left out, the elbow and
-        the one before)
-    bounds : low, high, low, high of the two axes; the arm's reach, or a full turn, if left out
-    hold : over tip, the task rows after the second; over joints, all n arm joints
+    over : "tip" (task rows, by inverse kinematics), "joints" (a box of arm joints), or "samples" of such a box
+    shape : cells along each axis, in the order of `axes`; for samples, how many
+    bounds : low, high of each axis in turn; the arm's reach, or a full turn, if left out
+    axes : task rows or arm joints that vary; the first two rows, or the elbow and the joint before, if left out
+    hold : over tip, the other task rows; else all n arm joints, used where they do not vary
+    vary : a parameter's name -> (low, high, count), a further axis each; names in `PARAMETERS`
+    sampling, seed : "random" or "halton"
+    engine : "compiled", "rows" (NumPy, no warm-up), or "auto", by the number of cells
+    store : a Zarr folder that blocks are written to as they finish; `resume` goes on with one that was interrupted
+    scheduler, workers : run the blocks on a Dask cluster, running or started here
     progress : called with the cells done and all cells
-    Raises InputError. A cell that cannot be judged gets a status instead of values.
+    Raises InputError, MissingExtra. A cell that cannot be judged gets a status instead of values.
     """
-    measures = [measures] if isinstance(measures, str) else measures
-    chosen = [choose("measure", name, MEASURES) for name in measures]
-    if not isinstance(shape, Sequence) or len(shape) != 2 or min(shape) < 2 or shape[0] * shape[1] > LARGEST:
-        raise InputError(f"shape: {shape} is not two counts from 2 up with at most {LARGEST} cells.")
+    names = [measures] if isinstance(measures, str) else list(measures)
+    chosen = tuple(choose("measure", name, MEASURES) for name in dict.fromkeys(names))
+    _check(plant, chosen)
+    place = _place(plant, over, shape, bounds, branch, axes, hold, dict(vary or {}), sampling, seed)
+    E = None if compensator is None else _gain(plant, compensator)
+    if store is None:
+        chosen += _companions(plant, chosen)
+    question = _question(plant, chosen, place, tuple(vary or {}), E)
+    total = int(np.prod(place.domain.shape, dtype=np.int64))
+    if store is None and (resume or total > LARGEST):
+        raise InputError(
+            f"shape: {total} cells; up to {LARGEST} are kept in memory. Give a store (--out NAME.zarr) for more."
+            if total > LARGEST
+            else "resume: there is nothing to resume without a store. Give --out NAME.zarr."
+        )
+    engine = _engine(engine, question, total)
+    solves = isinstance(place.domain, Grid) and place.domain.solve is not None
+    quick = engine == COMPILED and not solves and not any(one.slow for one in chosen)
+    block = block_shape(place.domain.shape, QUICK_BLOCK if quick else SLOW_BLOCK)
+    recipe = recipe_of(question, place, engine, str(branch or plant.arm.task.branch), block)
+    fields = fields_of(question, place.domain, block, names)
+    attributes = {"robot": plant.name, "compensated": int(E is not None), "over": over, **identity(recipe)}
+    everything = list(boxes(place.domain.shape, block))
+
+    def run(job: Job, blocks: Sequence[Work]) -> Any:
+        pooled = scheduler is not None or workers is not None
+        return by_dask(job, blocks, scheduler, workers) if pooled else by_threads(job, blocks)
+
+    job = Job(question, place.domain, engine, None if store is None else Path(store))
+    if job.store is None:
+        arrays = empty(fields)
+        for (_, box), values in _reported(run(job, everything), progress, 0, total):
+            region = tuple(slice(begin, end) for begin, end in box)
+            for name, part in values.items():
+                arrays[name][region] = part
+        return to_dataset(fields, arrays, attributes)
+    kept = open_store(job.store, recipe, fields, attributes, resume)
+    finished = kept.finished()
+    rest = [work for work in everything if not finished[work[0]]]
+    done = total - sum(_cells(work) for work in rest)
+    for _ in _reported(run(job, rest), progress, done, total) if rest else ():
+        pass
+    return open_dataset(job.store)
+
+
+def open_dataset(path: str | Path) -> Any:
+    """A sweep's store as an `xarray.Dataset`; values are read when they are used. Raises InputError."""
+    import xarray
+
+    try:
+        return xarray.open_zarr(path, consolidated=False, chunks=None).drop_vars(FINISHED)
+    except (OSError, ValueError, KeyError) as fault:
+        raise InputError(f"{path}: is no sweep of flexbase's. Give a folder that flexbase map wrote.") from fault
+
+
+def _reported(results: Any, progress: Progress, done: int, total: int) -> Any:
+    result: Result
+    progress(done, total)
+    for result in results:
+        done += _cells(result[0])
+        progress(done, total)
+        yield result
+
+
+def _cells(work: Work) -> int:
+    return int(np.prod([end - begin for begin, end in work[1]], dtype=np.int64))
+
+
+def _engine(wanted: str, question: Question, total: int) -> str:
+    """The engine that will be used, made ready: a missing package shows before any work."""
+    if wanted not in ENGINES:
+        raise InputError(f'engine: "{wanted}" is unknown. Give one of {", ".join(ENGINES)}.')
+    if wanted == ROWS or (wanted == AUTO and total < WORTH_COMPILING):
+        return ROWS
+    try:
+        from flexbase.sweep.evaluate import compiled
+
+        compiled(question)
+    except MissingExtra as missing:
+        if wanted == COMPILED:
+            raise
+        warnings.warn(f"{missing} Until then maps run on NumPy, ten times slower.", FlexbaseWarning, stacklevel=3)
+        return ROWS
+    return COMPILED
+
+
+def _question(
+    plant: Plant, chosen: tuple[Measure, ...], place: Place, parameters: tuple[str, ...], E: np.ndarray | None
+) -> Question:
+    return Question(plant.arm, chosen, place.varied, place.held, parameters, E, place.planar, place.side)
+
+
+def _place(
+    plant: Plant,
+    over: str,
+    shape: Sequence[int] | None,
+    bounds: Sequence[float] | None,
+    branch: str | None,
+    axes: Sequence[str],
+    hold: Sequence[float],
+    vary: Mapping[str, Range],
+    sampling: str,
+    seed: int,
+) -> Place:
+    if over == "tip":
+        return tip_place(plant, shape, bounds, axes, hold, branch, vary)
+    if over == "joints":
+        return joint_place(plant, shape, bounds, axes, hold, vary)
+    if over == "samples":
+        if sampling not in SAMPLINGS:
+            raise InputError(f'sampling: "{sampling}" is unknown. Give one of {", ".join(SAMPLINGS)}.')
+        return sample_place(plant, shape, bounds, axes, hold, vary, sampling, seed)
+    raise InputError(f'over: "{over}" is unknown. Give "tip", "joints" or "samples".')
+
+
+def _check(plant: Plant, chosen: Sequence[Measure]) -> None:
     arm = plant.arm
     if arm.has_gravity:
         warnings.warn(
-            f"map: {plant.name} has gravity; its sag and stiffness are left out.", FlexbaseWarning, stacklevel=2
+            f"map: {plant.name} has gravity; its sag and stiffness are left out.", FlexbaseWarning, stacklevel=3
         )
     if any(one.per_mode for one in chosen) and not _proportional(arm.base):
         warnings.warn(
             f"map: the damping of {plant.name} couples the modes; a map shows those of the undamped base.",
             FlexbaseWarning,
-            stacklevel=2,
+            stacklevel=3,
         )
     for one in chosen:
         if missing := one.needs(arm.m, arm.n, arm.k):
@@ -66,42 +204,17 @@ def sweep(
                 f"measure {one.name}: {missing} needed, {plant.name} has {arm.m} base joints, {arm.n} arm joints and "
                 f"{arm.k} task rows."
             )
+        if one.slow and arm.gains is None:
+            raise InputError(
+                f"measure {one.name}: task gains needed, {plant.name} has none. Give [control] in its project file."
+            )
+
+
+def _companions(plant: Plant, chosen: Sequence[Measure]) -> tuple[Measure, ...]:
+    """Measures that change their sign where one of the chosen only touches zero: pictures draw it by them."""
+    arm = plant.arm
     lines = [MEASURES[one.zero_line] for one in chosen if one.zero_line]
-    lines = [line for line in lines if line not in chosen and not line.needs(arm.m, arm.n, arm.k)]
-    grid = _grid(plant, over, shape, bounds, branch, joints, hold)
-    E = None if compensator is None else _gain(plant, compensator)
-    total = len(grid.reached)
-    status = np.full(total, UNREACHABLE, dtype=np.int8)
-    values = {one.name: np.full((total, arm.m) if one.per_mode else total, np.nan) for one in chosen + lines}
-    cells = np.flatnonzero(grid.reached)
-    for begin in range(0, len(cells), BLOCK):
-        block = cells[begin : begin + BLOCK]
-        found = evaluate(arm, grid.joints[block], chosen + lines, E)
-        status[block] = found.status
-        for name, column in found.values.items():
-            values[name][block] = column
-        progress(int(block[-1]) + 1, total)
-    rows, columns = len(grid.axes[1].values), len(grid.axes[0].values)
-    folded = {name: column.reshape(rows, columns, *column.shape[1:]) for name, column in values.items()}
-    shown = {one.name: folded[one.name] for one in chosen}
-    zero_lines = {one.name: folded[one.zero_line] for one in chosen if one.zero_line in folded}
-    return Chart(plant, grid.axes, shown, status.reshape(rows, columns), E is not None, zero_lines)
-
-
-def _grid(
-    plant: Plant,
-    over: str,
-    shape: tuple[int, int],
-    bounds: Sequence[float] | None,
-    branch: str | None,
-    joints: Sequence[str],
-    hold: Sequence[float],
-) -> Grid:
-    if over == "tip":
-        return tip_grid(plant, shape, bounds, hold, branch)
-    if over == "joints":
-        return joint_grid(plant, shape, bounds, joints, hold)
-    raise InputError(f'over: "{over}" is unknown. Give "tip" or "joints".')
+    return tuple(line for line in lines if line not in chosen and not line.needs(arm.m, arm.n, arm.k))
 
 
 def _proportional(base: Base) -> bool:

@@ -49,19 +49,59 @@ def mul(x: Scalar, y: Scalar) -> Scalar:
 
 
 def sin(x: Scalar) -> Scalar:
-    return math.sin(x) if isinstance(x, float) else np.sin(x)
+    return math.sin(x) if isinstance(x, float) else _of_many("sin", x)
 
 
 def cos(x: Scalar) -> Scalar:
-    return math.cos(x) if isinstance(x, float) else np.cos(x)
+    return math.cos(x) if isinstance(x, float) else _of_many("cos", x)
 
 
 def sqrt(x: Scalar) -> Scalar:
-    return math.sqrt(x) if isinstance(x, float) else np.sqrt(x)
+    return math.sqrt(x) if isinstance(x, float) else _of_many("sqrt", x)
+
+
+def absolute(x: Scalar) -> Scalar:
+    return abs(x) if isinstance(x, float) else _of_many("fabs", x)
 
 
 def atan2(y: Scalar, x: Scalar) -> Scalar:
-    return math.atan2(y, x) if isinstance(y, float) and isinstance(x, float) else np.arctan2(y, x)
+    if isinstance(y, float) and isinstance(x, float):
+        return math.atan2(y, x)
+    if _is_symbol(x) or _is_symbol(y):
+        return _symbolic().atan2(y, x)
+    return np.arctan2(y, x)
+
+
+def select(condition: Scalar, x: Scalar, y: Scalar) -> Scalar:
+    """x where a comparison holds, else y: nothing of the other, not even its NaN, is let through."""
+    if isinstance(condition, bool | np.bool_):
+        return x if condition else y
+    if _is_symbol(condition):
+        return _symbolic().if_else(condition, x, y)
+    return np.where(condition, x, y)
+
+
+def smaller(x: Scalar, y: Scalar) -> Scalar:
+    return select(y < x, y, x)
+
+
+def larger(x: Scalar, y: Scalar) -> Scalar:
+    return select(y > x, y, x)
+
+
+def _of_many(name: str, x: Scalar) -> Scalar:
+    """A function of a batch, by NumPy, or of a tracer's symbol."""
+    return getattr(_symbolic() if _is_symbol(x) else np, name)(x)
+
+
+def _is_symbol(x: Scalar) -> bool:
+    return type(x).__module__.startswith("casadi")
+
+
+def _symbolic() -> Any:
+    import casadi  # only where its symbols are already about
+
+    return casadi
 
 
 def plus(u: Vector, v: Vector) -> Vector:
@@ -208,3 +248,22 @@ def solve(A: Matrix, b: Vector) -> Vector:
         known = dot(triangle[i][i + 1 :], x[i + 1 :])
         x[i] = sub(sides[i], known) / triangle[i][i]
     return tuple(x)
+
+
+def independence(rows: Matrix) -> Scalar:
+    """How far the rows of a matrix are from linear dependence: 0 to 1, without a division by what may vanish.
+
+    The smallest part of a row that is orthogonal to those before it, over the longest row; at least the ratio of the
+    extreme singular values.
+    """
+    units: list[Vector] = []
+    least: Scalar = 0.0
+    longest: Scalar = 0.0
+    for i, row in enumerate(rows):
+        rest: Vector = tuple(row)
+        for unit in units:
+            rest = minus(rest, scale(dot(unit, rest), unit))
+        length, whole = norm(rest), norm(row)
+        units.append(scale(1.0 / or_one(length), rest))
+        least, longest = (smaller(length, least), larger(whole, longest)) if i else (length, whole)
+    return least / or_one(longest)

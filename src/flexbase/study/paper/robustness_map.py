@@ -16,12 +16,12 @@ from flexbase.errors import InputError
 from flexbase.linear.linearise import HasGain
 from flexbase.measures import MEASURES
 from flexbase.plant import Plant
-from flexbase.sweep.evaluate import evaluate
+from flexbase.sweep.evaluate import Engine
+from flexbase.sweep.question import Question
 from flexbase.trace.algebra import stack, unstack
 
 RINGS, SPOKES = 126, 361
 RIM = 1e-6  # of the reach, kept clear of its edges, where the arm is singular
-BLOCK = 16384
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +31,7 @@ class RobustnessMap:
     x, y : tip positions, shape (rings, spokes) [m]; the last spoke closes the circle
     robustness : w_1 [m/(N s^2)], NaN unless the status is OK; turn : angle from b to a [rad]
     smallest_inertia : smallest eigenvalue of M - E; below zero the arm under this E has no meaning
-    status : a key of `flexbase.sweep.chart.STATUS`
+    status : a key of `flexbase.sweep.STATUS`
     shoulder, inner, outer : centre [m] and radii [m] of the reachable ring
     """
 
@@ -73,28 +73,21 @@ def robustness_map(
     targets = np.column_stack([x.ravel(), y.ravel()])
     joints, _ = arm_angles_of_many(arm.mechanism, arm.task, arm.base.equilibrium, targets, arm.task.branch)
     E = None if compensator is None else np.asarray(compensator.E)
-    blocks = [
-        evaluate(arm, joints[begin : begin + BLOCK], [MEASURES["robustness"], MEASURES["turn"]], E)
-        for begin in range(0, len(joints), BLOCK)
-    ]
+    asked = (MEASURES["robustness"], MEASURES["turn"])
+    block = Engine(Question(arm, asked, (0, 1), (0.0, 0.0), E=E)).run(np.ascontiguousarray(joints.T))
     frames = forward(arm.mechanism, (*arm.base.equilibrium.tolist(), *unstack(joints, 1)))
     inertia = stack(mass_matrix(frames))
     if E is not None:
         inertia[..., arm.m :, arm.m :] -= E
-    status = np.concatenate([block.status for block in blocks])
     return RobustnessMap(
         x,
         y,
-        _folded([block.values["robustness"] for block in blocks], x.shape),
-        _folded([block.values["turn"] for block in blocks], x.shape),
+        block.values["robustness"].reshape(x.shape),
+        block.values["turn"].reshape(x.shape),
         np.linalg.eigvalsh(inertia)[:, 0].reshape(x.shape),
-        status.reshape(x.shape),
+        block.status.reshape(x.shape),
         (float(planar.shoulder[0]), float(planar.shoulder[1])),
         inner,
         outer,
         E is not None,
     )
-
-
-def _folded(parts: list[Array], shape: tuple[int, ...]) -> Array:
-    return np.concatenate(parts)[:, 0].reshape(shape)

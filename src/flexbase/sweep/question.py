@@ -1,0 +1,119 @@
+"""The one generic function of a sweep: a configuration and parameters in, a status and measures out."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from flexbase.checks import Array
+from flexbase.dynamics.two_joint_arm import TwoJointArm, two_joint_angles
+from flexbase.measures import Configuration, Measure
+from flexbase.model.mounted import MountedArm
+from flexbase.plant import SINGULAR as SINGULAR_RATIO
+from flexbase.sweep.parameters import configuration_of
+from flexbase.sweep.status import INDEFINITE, INFEASIBLE, OK, SINGULAR, UNREACHABLE
+from flexbase.trace.algebra import Scalar, Vector, absolute, independence, ldl, select
+
+STRETCHED = 1.0 + 1e-12  # cosine of the elbow, to rounding, at the edge of reach
+NAN = float("nan")
+
+
+@dataclass(frozen=True, eq=False)
+class Question:
+    """What is asked of every cell.
+
+    measures : those that the generic function evaluates, and the slow ones, which follow by LAPACK
+    varied : which coordinates are inputs, in this order; `held` : all coordinates, used where they are not
+    parameters : names of further inputs
+    planar : coordinates are the tip's in the plane of this two-joint arm; None: they are the n arm joints
+    side : the elbow's, +1 or -1, with `planar`
+    """
+
+    arm: MountedArm
+    measures: tuple[Measure, ...]
+    varied: tuple[int, ...]
+    held: tuple[float, ...]
+    parameters: tuple[str, ...] = ()
+    E: Array | None = None
+    planar: TwoJointArm | None = None
+    side: float = 1.0
+
+    @property
+    def inputs(self) -> int:
+        """How many scalars enter."""
+        return len(self.varied) + len(self.parameters)
+
+    @property
+    def quick(self) -> tuple[Measure, ...]:
+        """The measures of the generic function."""
+        return tuple(one for one in self.measures if not one.slow)
+
+    def width(self, one: Measure) -> int:
+        """How many values a measure has in each cell."""
+        return self.arm.m if one.per_mode else 1
+
+    def __call__(self, inputs: Vector) -> list[Scalar]:
+        """Status, then the values of the quick measures, NaN where they have none."""
+        joints, reached = self._joints(inputs)
+        configuration = self.configuration(inputs, joints)
+        pivots = [*configuration.reduced.pivots, *(ldl(configuration.reduced.S)[1] if self.arm.m else ())]
+        status: Scalar = float(OK)
+        for pivot in pivots:
+            status = select(pivot > 0.0, status, float(INDEFINITE))
+        ratio = independence(tuple(row[self.arm.m :] for row in configuration.J))
+        status = select(ratio > SINGULAR_RATIO, status, float(SINGULAR))
+        status = select(reached, status, float(UNREACHABLE))
+        usable, values = status == float(OK), []
+        for one in self.quick:
+            allowed = usable
+            if one.feasible is not None:
+                exists = one.feasible(configuration)
+                status = select(exists, status, select(usable, float(INFEASIBLE), status))
+                allowed = status == float(OK)
+            values += [select(allowed, value, NAN) for value in self._values(one, configuration)]
+        return [status, *values]
+
+    def _values(self, one: Measure, configuration: Configuration) -> list[Scalar]:
+        return [one.run(mode) for mode in configuration.modes] if one.per_mode else [one.run(configuration)]
+
+    def configuration(self, inputs: Vector, joints: Vector | None = None) -> Configuration:
+        """What measures read of a cell."""
+        known = self._joints(inputs)[0] if joints is None else joints
+        parameters = dict(zip(self.parameters, inputs[len(self.varied) :], strict=True))
+        return configuration_of(self.arm, known, parameters, None if self.E is None else self.E.tolist())
+
+    def _joints(self, inputs: Vector) -> tuple[Vector, Scalar]:
+        """Arm joints, and whether there are any."""
+        place = list(self.held)
+        for i, value in zip(self.varied, inputs, strict=False):
+            place[i] = value
+        if self.planar is None:
+            return tuple(place), True
+        first, second, cosine = two_joint_angles(self.planar, place[0], place[1], self.side)
+        return (first, second), absolute(cosine) <= STRETCHED
+
+    @cached_property
+    def recipe(self) -> str:
+        """All that the answers depend on, in words: equal recipes have equal answers."""
+        E = "none" if self.E is None else self.E.tobytes().hex()
+        names = ",".join(one.name for one in self.measures)
+        return (
+            f"model {model_digest(self.arm)}\nmeasures {names}\nvaried {self.varied}\nheld {self.held!r}\n"
+            f"parameters {self.parameters}\nE {E}\nplanar {self.planar is not None} {self.side}"
+        )
+
+
+def model_digest(arm: MountedArm) -> str:
+    """A fingerprint of every number of an arm on its base that a sweep reads."""
+    digest = hashlib.sha256()
+    mechanism = arm.mechanism
+    digest.update(repr((mechanism.joint_names, mechanism.joint_types, arm.task)).encode())
+    arrays = [value for value in vars(mechanism).values() if isinstance(value, np.ndarray)]
+    arrays += [arm.base.stiffness, arm.base.damping, arm.base.equilibrium]
+    arrays += [] if arm.gains is None else [arm.gains.stiffness, arm.gains.damping]
+    for array in arrays:
+        digest.update(repr(array.shape).encode() + np.ascontiguousarray(array, dtype=float).tobytes())
+    return digest.hexdigest()
