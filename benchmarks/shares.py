@@ -61,7 +61,8 @@ def main() -> None:
                     refused.append(number)
             shares = ", ".join(f"{name} {count}" for name, count in counts.most_common())
             print(
-                f"{robot}, {draw.__name__}, rho <= {options.radius:g}: {shares}; {slowest:.1f} s at most; without: {refused}"
+                f"{robot}, {draw.__name__}, rho <= {options.radius:g}: {shares}; "
+                f"{slowest:.1f} s at most; without: {refused}"
             )
 
 

@@ -216,7 +216,7 @@ def test_dictionary_is_plain_json(case):
         ("not json", "not valid JSON"),
         ("[]", "not a compensator"),
         ('{"format": "something else"}', "not a compensator"),
-        ('{"format": "flexbase compensator 1"}', "incomplete compensator"),
+        ('{"format": "flexbase compensator 1"}', "missing or unknown"),
         (
             '{"format": "flexbase compensator 1", "method": "m", "robot": "r", "q": [0], '
             '"E": [[1, 2], [3, 4]], "certificate": {}}',
@@ -225,7 +225,7 @@ def test_dictionary_is_plain_json(case):
         ('{"format": "flexbase compensator 1", "E": [[1, 2, 3]], "certificate": {}}', "square"),
         ('{"format": "flexbase compensator 1", "E": "x", "certificate": {}}', "not an array"),
         ('{"format": "flexbase compensator 1", "E": [[NaN]], "certificate": {}}', "not finite"),
-        ('{"format": "flexbase compensator 1", "E": [[1]], "q": [1], "certificate": 3}', "incomplete compensator"),
+        ('{"format": "flexbase compensator 1", "E": [[1]], "q": [1], "certificate": 3}', "missing or unknown"),
         ("\xff", "bad.json"),
     ],
 )

@@ -37,6 +37,7 @@ def tables(found: Compensator, inertia_unit: str) -> list[RenderableType]:
         *_gain(found, inertia_unit),
         table(columns, rows),
         facts(margins),
+        *_statement(proof.statement),
     ]
     if loop is None:
         return said
@@ -45,6 +46,11 @@ def tables(found: Compensator, inertia_unit: str) -> list[RenderableType]:
         "",
         verdict(loop < 0.0, "The task-space loop is stable here", "The task-space loop is unstable here"),
     ]
+
+
+def _statement(text: str) -> list[RenderableType]:
+    """What is certain about positive realness, a line of its own."""
+    return ["", f"  {text[0].upper()}{text[1:]}"] if text else []
 
 
 def _gain(found: Compensator, unit: str) -> list[RenderableType]:

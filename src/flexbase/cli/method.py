@@ -30,7 +30,10 @@ class MethodOptions:
     ] = None
     highest_frequency: Annotated[float | None, option(number, "W", "convex: upper bound of all modes [rad/s]")] = None
     objective: Annotated[
-        str | None, Parameter(metavar="NAME", help="exact: least-gain, least-radius; convex: aligned, least-misaligned")
+        str | None,
+        Parameter(
+            metavar="NAME", help="exact: least-gain, least-radius; convex: aligned, mode-by-mode, least-misaligned"
+        ),
     ] = None
     radius: Annotated[float | None, option(number, "G", "convex, bounded: bound on the algebraic-loop radius, 0.9")] = (
         None

@@ -28,6 +28,7 @@ class Certificate:
     algebraic_loop_radius_per_joint : mu; the same with another delay in each joint  [theory §8]
     lag_margin_s : first-order lag of the acceleration feedback that the loop bears; None: no limit to 1 s, or no gains
     closed_loop_abscissa : rightmost pole of the task-space loop [1/s]; None without gains
+    statement : why the plant is positive real with this gain, or that it is not; empty in files of older versions
     warnings : plain words on what to beware of
     """
 
@@ -41,6 +42,7 @@ class Certificate:
     algebraic_loop_radius_per_joint: float
     lag_margin_s: float | None
     closed_loop_abscissa: float | None
+    statement: str = ""
     warnings: tuple[str, ...] = ()
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from flexbase.checks import Array
 from flexbase.control.compensator import Compensator
 from flexbase.design.certificate import certify
+from flexbase.design.choice import least_lacking
 from flexbase.design.descent import descend, shortage_and_slope
 from flexbase.design.implementable import RADIUS, BoundedGain, checked_radius
 from flexbase.design.least_misalignment import MARGIN, least_misalignment
@@ -18,7 +19,6 @@ from flexbase.model.task import Gains
 from flexbase.plant import Pose
 
 SPREAD = 0.5  # of the random start's entries
-NOTHING = 1e-10  # shortage relative to no E that counts as none: the smaller gain then wins
 
 
 @method("bounded", "any base, arm and task: least passivity shortage by descent, the radius bounded by construction")
@@ -34,7 +34,8 @@ def bounded(
     Assumes a compliant base; natural frequencies are not aimed at; leaves gravity stiffness out of the equations. BFGS
     with exact slopes over a free symmetric matrix, from three starts: no gain, a random one (`seed`), and the
     least-misaligned one where the extra "convex" is installed. An undamped base is designed as if it had 1 % damping.
-    The certificate's `target_residual` is what is left missing, in a mode or in the whole response, relative.
+    Of what the descents find, the gain whose whole response lacks least is taken, and never one that lacks more than
+    no gain. The certificate's `target_residual` is what is left missing, in a mode or in the whole response, relative.
     """
     if pose.arm.m == 0:
         raise InputError("bounded: the base is rigid, so there is no mode to shape.")
@@ -44,9 +45,7 @@ def bounded(
         return certify(pose, "bounded", none, target_residual=0.0, gains=gains)
     random = SPREAD * np.random.default_rng(seed).standard_normal(none.shape)
     starts = [none, BoundedGain(pose, g).at(0.5 * (random + random.T))[0], *_convex_start(pose, g)]
-    found = [descend(pose, g, start) for start in starts]
-    least = min(value for value, _ in found)
-    E = min((E for value, E in found if value <= least + NOTHING), key=lambda E: float(np.linalg.norm(E)))
+    E = least_lacking(pose, [descend(pose, g, start)[1] for start in starts])
     missing, cautions = target_residual(pose, E), cautions_of_shortage(pose, E)
     return certify(pose, "bounded", E, target_residual=missing, gains=gains, cautions=cautions)
 

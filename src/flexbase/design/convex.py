@@ -2,28 +2,33 @@
 
 In the arm's mobility Y = (Mhat - E)^-1 the input shape V = Jv Y Map and the inertia S = Mpp - Mpa Y Map are affine.
 V = beta Jp with one beta outside (0, 1) makes the plant positive real at any damping of the base. (Y, beta) are jointly
-affine, so beta <= 0 and beta >= 1 are two semidefinite programs; the bound on the algebraic loop is a box on Y.
+affine, so beta <= 0 and beta >= 1 are two semidefinite programs; the bound on the algebraic loop is a box on Y. Where
+one beta has no solution each mode may have its own.
 """
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import numpy as np
 
 from flexbase.checks import Array, positive_number
 from flexbase.control.compensator import Compensator
 from flexbase.design.certificate import certify
+from flexbase.design.choice import check_no_worse, least_lacking
 from flexbase.design.descent import descend, shortage_and_slope
 from flexbase.design.implementable import RADIUS, checked_radius
 from flexbase.design.least_misalignment import MARGIN, least_misalignment
-from flexbase.design.mobility_program import SIDES, MobilityProgram, Solution
+from flexbase.design.mobility_program import ROOM, SIDES, MobilityProgram, Solution
 from flexbase.design.registry import method
 from flexbase.design.shortage import cautions_of_shortage, target_residual
+from flexbase.design.two_modes import TwoModes
 from flexbase.errors import Infeasible, InputError
 from flexbase.linear.modal import modes
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
 
-OBJECTIVES = ("aligned", "least-misaligned")
+OBJECTIVES = ("aligned", "mode-by-mode", "least-misaligned")
 SHARE = 0.5  # of the largest reachable distance, where MARGIN itself is not reachable
 SOLVABLE = 1e-9  # relative residual of V = beta Jp up to which the equation counts as solvable
 RADIUS_STEPS = 12  # bisections for the smallest radius that a refusal names
@@ -49,15 +54,20 @@ def convex(
     radius : bound on the algebraic loop's radius, below 1
     margin : distance of beta from (0, 1); half the largest that exists where that is less
     objective : "aligned", V = beta Jp, which needs k + m <= n + 1 in general: positive real at any damping; or
-        "least-misaligned", each mode with a beta of its own, as near as the bounds let it: positive real where the
-        certificate says so. Left out: aligned if that is feasible, least-misaligned if not
-    Raises Infeasible, naming what binds: the frequencies, and for "aligned" the radius (with the smallest that would
-    do) or the equation itself.
+        "mode-by-mode", on two base joints, each mode aligned with a beta of its own: positive real at the base's own
+        damping; or "least-misaligned", as near to that as the bounds let it: positive real where the certificate says
+        so, and never further from it than without E. Left out: the first of the three that is feasible
+    Raises Infeasible, naming what binds: the frequencies, and for the first two the radius (with the smallest that
+    would do) or the equation itself.
     """
     if pose.arm.m == 0:
         raise InputError("convex: the base is rigid, so there is no mode to shape.")
     if objective not in (None, *OBJECTIVES):
         raise InputError(f'objective: "{objective}" is unknown. Give one of {", ".join(OBJECTIVES)}.')
+    if objective == "mode-by-mode" and pose.arm.m != 2:
+        raise InputError(
+            f"objective: mode-by-mode is for two base joints, {pose.arm.m} given. Ask for another, or leave it out."
+        )
     if not 0.0 <= margin < np.inf:
         raise InputError(f"margin: {margin!r} must be 0 or more. {MARGIN:g} is the usual choice.")
     program = MobilityProgram(pose, checked_radius(radius), *_bounds(pose.arm.m, natural_frequency, highest_frequency))
@@ -74,8 +84,9 @@ def convex(
         E = program.gain(aligned)
         return certify(pose, "convex", E, target_residual=program.residual(E), gains=gains)
     if objective == "aligned" and not still:
-        raise Infeasible(_what_binds(program))
-    E = _least_misaligned(program, margin)
+        raise Infeasible(_what_binds(program, _aligns))
+    each = _mode_by_mode(program, margin, objective)
+    E = _least_misaligned(program, margin) if each is None else each
     missing, cautions = target_residual(pose, E), cautions_of_shortage(pose, E)
     return certify(pose, "convex", E, target_residual=missing, gains=gains, cautions=cautions)
 
@@ -100,22 +111,34 @@ def _aligned(program: MobilityProgram, margin: float) -> Solution | None:
     return min((one for one in found if one is not None), key=lambda one: one.value, default=None)
 
 
+def _mode_by_mode(program: MobilityProgram, margin: float, objective: str | None) -> Array | None:
+    """Each mode aligned with a beta of its own; None where that is not asked for, or neither asked for nor feasible."""
+    if program.pose.arm.m != 2 or objective == "least-misaligned":
+        return None
+    E = TwoModes(program).gain(margin)
+    if E is None and objective == "mode-by-mode":
+        raise Infeasible(_what_binds(program, _aligns_each))
+    return E
+
+
 def _least_misaligned(program: MobilityProgram, margin: float) -> Array:
     """Each mode near a beta of its own; then, where the frequencies are free, downhill from there and from E = 0."""
     pose = program.pose
     none = np.zeros((pose.arm.n, pose.arm.n))
     if program.bounded:
-        return least_misalignment(program, margin)
+        E = least_misalignment(program, margin)
+        check_no_worse(pose, E)
+        return E
     if shortage_and_slope(pose, none)[0] == 0.0:  # a base that does not move the tip, for one
         return none
     starts = (least_misalignment(program, margin), none)
-    return min((descend(pose, program.radius, start) for start in starts), key=lambda found: found[0])[1]
+    return least_lacking(pose, [descend(pose, program.radius, start)[1] for start in starts])
 
 
-def _what_binds(program: MobilityProgram) -> str:
-    """Why V = beta Jp fails inside the bounds. The frequencies by themselves were checked before."""
+def _what_binds(program: MobilityProgram, aligns: Callable[[MobilityProgram], bool]) -> str:
+    """Why an alignment fails inside the bounds. The frequencies by themselves were checked before."""
     g, pose = program.radius, program.pose
-    if program.bounded and _aligns(MobilityProgram(pose, g)):
+    if program.bounded and aligns(MobilityProgram(pose, g)):
         frequencies = ", ".join(f"{mode.frequency:.4g}" for mode in modes(pose).modes)
         return (
             f"the natural frequencies bind: at radius {g:g} the modes can be aligned, and the frequencies can be had, "
@@ -123,16 +146,20 @@ def _what_binds(program: MobilityProgram) -> str:
         )
     mend = "Choose another pose, or ask for the objective least-misaligned."
     low, high = g, 1.0 - 1e-6
-    if not _aligns(MobilityProgram(pose, high)):
+    if not aligns(MobilityProgram(pose, high)):
         return f"no gain with an algebraic-loop radius below 1 aligns the modes here. {mend}"
     for _ in range(RADIUS_STEPS):
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if _aligns(MobilityProgram(pose, middle)) else (middle, high)
+        low, high = (low, middle) if aligns(MobilityProgram(pose, middle)) else (middle, high)
     return f"the radius binds: gains that align the modes here have {high:.4f} or more, {g:g} is asked. {mend}"
 
 
 def _aligns(program: MobilityProgram) -> bool:
     return any(program.farthest(side) is not None for side in SIDES)
+
+
+def _aligns_each(program: MobilityProgram) -> bool:
+    return TwoModes(program).widening() < -ROOM
 
 
 def _check_frequencies(program: MobilityProgram) -> None:

@@ -16,7 +16,7 @@ from flexbase.linear.margins import arm_on_free_base
 from flexbase.plant import Pose
 
 RADIUS = 0.9  # default bound on the algebraic loop's radius
-INSIDE = 1.0 - 1e-6  # share of the bound that designs use, so that a solver's rounding cannot cross it
+INSIDE = 1.0 - 1e-5  # share of the bound that designs use, so that a solver's rounding cannot cross it
 
 
 class Box(NamedTuple):

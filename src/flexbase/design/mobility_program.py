@@ -67,8 +67,7 @@ class MobilityProgram:
         """E of a solution, after V = beta Jp is met to rounding by the nearest Z."""
         lines, basis = self._linear_map()
         missing = solution.beta * self.goal - self.rows @ solution.mobility @ self.columns
-        change = np.linalg.lstsq(lines, missing.ravel(), rcond=None)[0]
-        return self.box.gain(solution.mobility + np.tensordot(change, basis, axes=1))
+        return self.box.gain(solution.mobility + least_change(lines, missing.ravel(), basis))
 
     def misfit(self) -> float:
         """Smallest |V - Jp| / |Jp| over all symmetric Z: zero where V = beta Jp has any, infinite if Jp = 0."""
@@ -92,7 +91,7 @@ class MobilityProgram:
         if not self._has_room([*equality, away]):
             return None
         near = side * beta <= FAR
-        self._solve(self.cp.Maximize(side * beta), [*self.inside, *self.frequency_bounds, *equality, near])
+        self.solve(self.cp.Maximize(side * beta), [*self.inside, *self.frequency_bounds, *equality, near])
         return float(side * beta.value) - (side > 0)
 
     def least_change(self, side: Side, margin: float) -> Solution | None:
@@ -100,7 +99,7 @@ class MobilityProgram:
         beta = self.cp.Variable()
         away = side * beta >= margin + (side > 0)
         change = self.cp.norm(self.Z - np.eye(len(self.B)), "fro")
-        value = self._solve(
+        value = self.solve(
             self.cp.Minimize(change), [*self.inside, *self.frequency_bounds, *self._equality(beta), away]
         )
         return None if value is None else Solution(np.asarray(self.Z.value), float(beta.value), value)
@@ -114,7 +113,7 @@ class MobilityProgram:
         gap = self.A @ self.Z @ (self.B @ shapes) - cp.multiply(self.Jp @ shapes, cp.reshape(beta, (1, -1), order="C"))
         scaled = cp.multiply(gap, np.sqrt(weights)[None, :])
         away = cp.multiply(outer, beta) >= margin + (outer > 0)
-        value = self._solve(cp.Minimize(cp.sum_squares(scaled)), [*self.inside, *self.frequency_bounds, away])
+        value = self.solve(cp.Minimize(cp.sum_squares(scaled)), [*self.inside, *self.frequency_bounds, away])
         return None if value is None else Solution(np.asarray(self.Z.value), float("nan"), value)
 
     def reaches_frequencies(self) -> bool:
@@ -126,9 +125,15 @@ class MobilityProgram:
         cp, ends = self.cp, []
         ratio, S, K = cp.Variable(), self._scaled_inertia(), self._scaled_stiffness()
         for goal, bound in ((cp.Minimize(ratio), ratio * K - S), (cp.Maximize(ratio), S - ratio * K)):
-            self._solve(goal, [*self.inside, bound >> 0])
+            self.solve(goal, [*self.inside, bound >> 0])
             ends.append(self._frequency / float(np.sqrt(ratio.value)))
         return ends[0], ends[1]
+
+    def widened(self, wider: Any) -> list[Any]:
+        """The box and the bounds on the frequencies, eased by `wider` of the box's width."""
+        eye = np.eye(len(self.B))
+        box = [self.Q + wider * eye >> 0, (1.0 + wider) * eye - self.Q >> 0, wider >= -1.0]
+        return [*box, *self._frequency_bounds(wider)]
 
     def _frequency_bounds(self, wider: Any = 0.0) -> list[Any]:
         """omega >= lowest for all modes is S <= Kp / lowest^2, and so on: linear in Z; eased by `wider`. [theory §7]"""
@@ -160,11 +165,7 @@ class MobilityProgram:
 
     def _linear_map(self) -> tuple[Array, Array]:
         """V's entries, scaled, as a matrix on an orthonormal basis of the symmetric matrices; and that basis."""
-        n = len(self.B)
-        upper = np.column_stack(np.triu_indices(n))
-        basis = np.zeros((len(upper), n, n))
-        for matrix, (i, j) in zip(basis, upper, strict=True):
-            matrix[i, j] = matrix[j, i] = 1.0 if i == j else np.sqrt(0.5)
+        basis = symmetric_basis(len(self.B))
         return np.array([(self.rows @ matrix @ self.columns).ravel() for matrix in basis]).T, basis
 
     def _has_room(self, further: list[Any]) -> bool:
@@ -172,16 +173,16 @@ class MobilityProgram:
 
         Asking the solver for that number instead of a verdict keeps it away from infeasible programs.
         """
-        n = len(self.B)
         wider = self.cp.Variable()
-        widened = [self.Q + wider * np.eye(n) >> 0, (1.0 + wider) * np.eye(n) - self.Q >> 0, wider >= -1.0]
-        bounds = self._frequency_bounds(wider)
-        least = self._solve(self.cp.Minimize(wider), [*widened, *bounds, *further])
+        least = self.solve(self.cp.Minimize(wider), [*self.widened(wider), *further])
         return least is not None and least < -ROOM
 
-    def _solve(self, objective: Any, constraints: list[Any]) -> float | None:
+    def solve(self, objective: Any, constraints: list[Any]) -> float | None:
         """The optimal value; None where the constraints exclude each other. Raises Infeasible if Clarabel gives up."""
-        problem = self.cp.Problem(objective, constraints)
+        return self.run(self.cp.Problem(objective, constraints))
+
+    def run(self, problem: Any) -> float | None:
+        """`solve` of a problem that was stated before."""
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # cvxpy says "inaccurate" here; certificates judge the result itself
             try:
@@ -195,3 +196,17 @@ class MobilityProgram:
         if problem.status not in SOLVED:
             raise Infeasible(f"the solver Clarabel ended with {problem.status}. Give another pose or another radius.")
         return float(value)
+
+
+def symmetric_basis(n: int) -> Array:
+    """An orthonormal basis of the symmetric matrices, shape (n(n+1)/2, n, n)."""
+    upper = np.column_stack(np.triu_indices(n))
+    basis = np.zeros((len(upper), n, n))
+    for matrix, (i, j) in zip(basis, upper, strict=True):
+        matrix[i, j] = matrix[j, i] = 1.0 if i == j else np.sqrt(0.5)
+    return basis
+
+
+def least_change(lines: Array, missing: Array, basis: Array) -> Array:
+    """The smallest symmetric matrix that supplies what equations, given on a basis, still miss."""
+    return np.asarray(np.tensordot(np.linalg.lstsq(lines, missing, rcond=None)[0], basis, axes=1))
