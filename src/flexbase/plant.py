@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from flexbase.checks import FARTHEST, Array, check_length, check_within, finite_array
 from flexbase.dynamics.inertia import mass_matrix
-from flexbase.dynamics.inverse_kinematics import arm_angles
+from flexbase.dynamics.inverse_kinematics import Solution, arm_angles, arm_solutions
 from flexbase.dynamics.kinematics import Frames, forward, task_jacobian
 from flexbase.dynamics.statics import gravity_stiffness, gravity_torques, static_base
 from flexbase.dynamics.task import Target, target_of, task_error, task_value
@@ -24,6 +24,7 @@ from flexbase.model.task import check_branch
 from flexbase.trace.algebra import unstack
 
 SINGULAR = 1e-8  # smallest to largest singular value of Jv, below which the arm counts as singular
+ON_TARGET = 1e-9  # m or rad: a tip nearer than this is there
 ILL_CONDITIONED = 1e12  # condition number of M above which results lose most of their digits
 
 
@@ -56,29 +57,57 @@ class Plant:
     def at_tip(self, target: ArrayLike, branch: str | None = None, near: ArrayLike | None = None) -> Pose:
         """The pose whose resting tip is at a target, one value for each task row [m, rad].
 
-        branch : sign of the elbow, "+" or "-"; the project's own if left out
-        near : n arm joints; of several solutions on the branch the nearest to these is taken
+        Of several solutions on the branch the nearest to `near` is taken. Without it: of a redundant arm the
+        posture with the most isotropic Jv over its self-motion; of an arm with named branches the first that exists;
+        else the one nearest to zero. Joint limits are not looked at. One or two rotation rows on an arm that
+        turns freely ask for those components of the tool's rotation vector (`Pose.tip`) and leave the others open.
+
+        branch : sign of the elbow, "+" or "-", or of shoulder, elbow and wrist, such as "+-+" (docs/notation.md); the
+            project's own if left out
+        near : n arm joints
         Raises Unreachable with the distance that is missing, SingularArm, InputError.
         """
         wanted = check_length("tip", target, self.arm.k, f"one for each task row, {' '.join(self.arm.task.rows)}")
         check_within("tip", wanted, FARTHEST, "rad or m")
         side = check_branch(branch or self.arm.task.branch)
-        _check_turnable(self.arm)
         centre = None if near is None else check_length("near", near, self.arm.n, "one for each arm joint")
         base = self.arm.base.equilibrium
         for _ in range(60):  # without gravity the first pass is exact; with it, the sag contracts
             found, missing = arm_angles(self.arm.mechanism, self.arm.task, base, wanted, side, centre)
             if found is None:
-                raise Unreachable(
-                    f"tip: {wanted.tolist()} is out of reach of {self.name} on branch {side}, by "
-                    f"{missing:.4g} m (or rad). "
-                    "Give a nearer target or the other branch."
-                )
+                raise Unreachable(self._missed(wanted, side, base, missing))
             sagged = static_base(self.arm, found, self.arm.base.equilibrium)
             if np.allclose(sagged, base, rtol=0.0, atol=1e-15):
                 return self._pose(found, self.arm.base.equilibrium)
             base, centre = sagged, found
         raise Unreachable(f"tip: the sag of {self.name} at {wanted.tolist()} does not converge. Give a stiffer base.")
+
+    def solutions(self, target: ArrayLike) -> tuple[Solution, ...]:
+        """All ways to rest with the tip at a target, one value for each task row [m, rad]: branch and arm joints.
+
+        Assumes as many task rows as arm joints. Arms of six joints with named branches have up to eight, with different
+        names; a pose of any of them is `at_tip(target, branch)`, or `at(joints)`. Under gravity the base sags for each.
+        Empty where the target is out of reach. Singular ones are left out. Raises InputError for redundant arms.
+        """
+        wanted = check_length("tip", target, self.arm.k, f"one for each task row, {' '.join(self.arm.task.rows)}")
+        found = []
+        for one in arm_solutions(self.arm.mechanism, self.arm.task, self.arm.base.equilibrium, wanted):
+            try:
+                pose = self.at_tip(wanted, one.branch, near=one.joints)
+            except (SingularArm, Unreachable):
+                continue
+            found.append(Solution(one.branch, pose.q[self.arm.m :]))
+        return tuple(found)
+
+    def _missed(self, wanted: Array, side: str, base: Array, missing: float) -> str:
+        """Why no joints were found, and what to ask for instead."""
+        said = f"tip: {wanted.tolist()} is out of reach of {self.name} on branch {side}"
+        if missing > ON_TARGET:
+            return f"{said}, by {missing:.4g} m (or rad). Give a nearer target or the other branch."
+        if self.arm.n > self.arm.k:
+            return f"{said}, though not on every branch. Give another branch."
+        others = [one.branch for one in arm_solutions(self.arm.mechanism, self.arm.task, base, wanted)]
+        return f"{said}, but reached on {', '.join(dict.fromkeys(others)) or 'others'}. Give one of them."
 
     def _pose(self, arm_joints: Array, equilibrium: Array) -> Pose:
         q = np.concatenate([static_base(self.arm, arm_joints, equilibrium), arm_joints])
@@ -163,21 +192,6 @@ def load(robot: str | Path) -> Plant:
 def inertia_at(mechanism: Mechanism, q: Array) -> Array:
     """M of a mechanism at a configuration, shape (N, N)."""
     return np.array(mass_matrix(forward(mechanism, tuple(q.tolist()))))
-
-
-def _check_turnable(arm: MountedArm) -> None:
-    """Refuse tip targets whose rotation rows do not fix the tool, on an arm that turns about other axes too."""
-    rows = [row for row in arm.task.indices if row >= 3]
-    if len(rows) in (0, 3):
-        return
-    frames = forward(arm.mechanism, (*arm.base.equilibrium.tolist(), *(0.5,) * arm.n))
-    axes = np.array([motion.angular for motion in frames.motions])
-    others = [axis for axis in range(3) if axis + 3 not in rows]
-    if len(rows) == 2 or np.abs(axes[:, others]).max() > 1e-12:
-        raise InputError(
-            f"tip: the rows {' '.join(arm.task.rows)} leave the tool's rotation open, so a target does not fix it. "
-            "Give joints, or all of rx ry rz."
-        )
 
 
 def _check_inertia(pose: Pose) -> None:

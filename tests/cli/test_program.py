@@ -44,14 +44,14 @@ def test_help_has_an_example_and_fits(call: Call, command: str) -> None:
 
 
 SHOWN = {
-    "modes": "--tip --joints --elbow --compensator --out --json",
-    "check": "--tip --joints --elbow --json",
-    "design": "--tip --joints --elbow --method --natural-frequency --highest-frequency --objective --radius --margin "
-    "--derivatives --step --iterations --seed --stiffness --damping --out --json",
-    "simulate": "--from --to --elbow --compensator --switch --end --trajectory --compensate --interval --self-motion "
-    "--plant --stiffness --damping --out --json",
-    "ellipsoid": "--tip --joints --elbow --compensator --convention --out --json",
-    "map": "--over --shape --measure --measures --bounds --elbow --hold --axes --compensator --out --json",
+    "modes": "--tip --joints --elbow --branch --compensator --out --json",
+    "check": "--tip --joints --elbow --branch --json",
+    "design": "--tip --joints --elbow --branch --method --natural-frequency --highest-frequency --objective --radius "
+    "--margin --derivatives --step --iterations --seed --stiffness --damping --out --json",
+    "simulate": "--from --to --elbow --branch --compensator --switch --end --trajectory --compensate --interval "
+    "--self-motion --plant --stiffness --damping --out --json",
+    "ellipsoid": "--tip --joints --elbow --branch --compensator --convention --out --json",
+    "map": "--over --shape --measure --measures --bounds --elbow --branch --hold --axes --compensator --out --json",
     "reproduce": "--out --json",
     "robots": "--json",
     "init": "--schema",

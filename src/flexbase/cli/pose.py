@@ -11,15 +11,15 @@ from cyclopts import Group, Parameter
 from rich.console import RenderableType
 
 from flexbase.cli.digits import listed
+from flexbase.cli.elbow import Elbow as Elbow
 from flexbase.cli.options import blaming, option
 from flexbase.cli.show import facts
-from flexbase.cli.words import Vector, numbers, sign
+from flexbase.cli.words import Vector, numbers
 from flexbase.control.compensator import Compensator, load_compensator
 from flexbase.errors import FlexbaseWarning, InputError
 from flexbase.plant import Plant, Pose
 
 Robot = Annotated[str, Parameter(help="bundled name (see: flexbase robots) or path of a project file")]
-Elbow = Annotated[str | None, option(sign, "+|-", "side of the elbow; the project's branch if left out")]
 POSE = Group("Pose", sort_key=10)
 
 

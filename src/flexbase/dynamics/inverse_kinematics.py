@@ -1,140 +1,205 @@
-"""Inverse kinematics of any serial arm: damped Newton steps from many starts at once."""
+"""Inverse kinematics of any serial arm: closed forms where there are any, else damped Newton steps from many starts."""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flexbase.checks import Array
-from flexbase.dynamics.kinematics import forward, task_jacobian
-from flexbase.dynamics.task import Target, target_at, task_error
-from flexbase.dynamics.two_joint_arm import solve_two_joint_arm, two_joint_arm
+from flexbase.dynamics.branches import NAMES, elbow_of, inside_branch, matching, places
+from flexbase.dynamics.newton import TOLERANCE, TipProblem, newton, reach, solve_rows
+from flexbase.dynamics.posture_criteria import Criterion, isotropy
+from flexbase.dynamics.posture_map import best_postures
+from flexbase.dynamics.self_motion import best_posture
+from flexbase.dynamics.six_joint_arm import ROUNDED, SixJointArm, six_joint_arm, solve_six_joint_arm
+from flexbase.dynamics.starts import STARTS, spread_starts
+from flexbase.dynamics.two_joint_arm import TwoJointArm, solve_two_joint_arm, two_joint_arm
+from flexbase.errors import InputError
 from flexbase.model.mechanism import Mechanism
-from flexbase.model.task import Task
-from flexbase.trace.algebra import stack
+from flexbase.model.task import BRANCHES, Task
 
-STARTS = 128
+__all__ = ["Solution", "arm_angles", "arm_angles_of_many", "arm_solutions", "elbow_of", "newton", "reach"]
+
 FEW_STARTS = 8
-STEPS = 80
-LARGEST_STEP = 0.5  # rad or m, a Newton step
 STRETCHED = 1.0 + 1e-12  # cosine of the elbow, to rounding, at the edge of reach
-TOLERANCE = 1e-11  # of the arm's reach: rounding in the kinematics is some 1e-15 of it
+DISTINCT = 1e-6  # rad or m, between solutions; Newton steps agree to 1e-9 except next to a singular arm
+
+
+class Solution(NamedTuple):
+    """One way to reach a target.
+
+    branch : shoulder, elbow and wrist signs of an arm with six joints; else the sign of the elbow
+    joints : arm joints, shape (n,), revolute ones in (-pi, pi]
+    """
+
+    branch: str
+    joints: Array
 
 
 def arm_angles(
-    mechanism: Mechanism, task: Task, base_rest: Array, target: Array, branch: str, near: Array | None = None
+    mechanism: Mechanism,
+    task: Task,
+    base_rest: Array,
+    target: Array,
+    branch: str,
+    near: Array | None = None,
+    criterion: Criterion | None = None,
 ) -> tuple[Array | None, float]:
     """Arm joints that bring the tip to a target while the base rests, and the smallest tip error that was found.
 
-    The branch is the sign of the elbow (`elbow_of`). Of several solutions the one nearest to `near` is taken; without
-    it the one nearest to zero, or for redundant arms the best conditioned. None where no start arrives.
+    Of several solutions on the branch the one nearest to `near` is taken. Without it: of a redundant arm the best over
+    its self-motion, by `criterion` or else by `isotropy`; of an arm with named branches the first in the order of
+    NAMES; else the one nearest to zero. None where no start arrives.
+
+    branch : as in `inside_branch`; base_rest : shape (m,); target : shape (k,) [m, rad]; near : shape (n,)
+    Raises InputError where the branch does not exist on this arm.
     """
     planar = two_joint_arm(mechanism, task, base_rest)
+    inside = inside_branch(mechanism, base_rest, branch)
     if planar is not None:
-        first, second, cosine = solve_two_joint_arm(planar, target[0], target[1], branch)
-        reached = abs(float(cosine)) <= STRETCHED
-        distance = float(np.hypot(*(target - planar.shoulder)))
-        shortfall = max(distance - planar.upper - planar.fore, abs(planar.upper - planar.fore) - distance, 0.0)
-        return (np.array([first, second]), 0.0) if reached else (None, shortfall)
-    starts = _starts(mechanism, len(base_rest), branch, near)
+        return _planar_angles(planar, target, branch)
+    six = _closed_six(mechanism, task, base_rest)
+    if six is not None:
+        allowed = [NAMES[i] for i in matching(branch)]
+        solutions = [one for one in _six_solutions(six, mechanism, task, base_rest, target) if one.branch in allowed]
+        if solutions:
+            gaps = [0.0 if near is None else float(np.linalg.norm(one.joints - near)) for one in solutions]
+            return solutions[int(np.argmin(gaps))].joints, 0.0
+    n, m = mechanism.N - len(base_rest), len(base_rest)
+    if n > task.k and near is None:
+        best = best_posture(
+            mechanism, task, base_rest, target, criterion or isotropy(mechanism, task, base_rest), branch
+        )
+        if best is not None:
+            return best.joints, 0.0
+    starts = spread_starts(mechanism, m, branch, STARTS)
+    if near is not None:
+        starts[0] = near
     found, errors = newton(mechanism, task, base_rest, starts, target)
-    good = (errors <= TOLERANCE * reach(mechanism)) & _on_branch(mechanism, len(base_rest), found, branch)
-    if not good.any():
+    good = (errors <= TOLERANCE * reach(mechanism)) & inside(found)
+    if not good.any() or six is not None:
         return None, float(errors.min())
-    if near is None and found.shape[1] > task.k:
-        return found[good][np.argmax(_conditioning(mechanism, task, base_rest, found[good]))], 0.0
-    centre = np.zeros(found.shape[1]) if near is None else near
+    centre = np.zeros(n) if near is None else near
     return found[good][np.argmin(np.linalg.norm(found[good] - centre, axis=1))], 0.0
 
 
-def elbow_of(n: int) -> int | None:
-    """Which arm joint is the elbow: the fourth of seven, the third of six, the second of fewer, none of one."""
-    return None if n < 2 else {6: 2, 7: 3}.get(n, 1)
+def arm_solutions(mechanism: Mechanism, task: Task, base_rest: Array, target: Array) -> list[Solution]:
+    """All distinct ways to reach a target while the base rests, in the order of their branches.
 
+    Assumes as many task rows as arm joints. Arms with named branches and two parallel joints: complete, and no two
+    share a name except next to a singular arm. Others: all that Newton steps from many starts find, named
+    by the elbow, so that several may share a sign. Empty where the target is out of reach.
 
-def _conditioning(mechanism: Mechanism, task: Task, base_rest: Array, joints: Array) -> Array:
-    """Smallest over largest singular value of Jv, for each row of joints."""
-    frames = forward(mechanism, (*map(float, base_rest), *joints.T))
-    values = np.linalg.svd(stack(task_jacobian(frames, task.indices))[..., len(base_rest) :], compute_uv=False)
-    return np.asarray(values[..., -1] / values[..., 0])
+    base_rest : shape (m,); target : shape (k,) [m, rad]
+    Raises InputError for a redundant arm, which has infinitely many.
+    """
+    n = mechanism.N - len(base_rest)
+    if n > task.k:
+        raise InputError(
+            f"solutions: {n} arm joints for {task.k} task rows leave infinitely many. "
+            "Take at_tip, with near or without."
+        )
+    planar = two_joint_arm(mechanism, task, base_rest)
+    if planar is not None:
+        pairs = [(branch, _planar_angles(planar, target, branch)[0]) for branch in BRANCHES[:2]]
+        return [Solution(branch, joints) for branch, joints in pairs if joints is not None]
+    six = _closed_six(mechanism, task, base_rest)
+    if six is not None:
+        return _six_solutions(six, mechanism, task, base_rest, target)
+    problem = TipProblem(mechanism, task, base_rest)
+    starts = np.concatenate([spread_starts(mechanism, problem.m, sign, STARTS) for sign in BRANCHES[:2]])
+    found, errors = solve_rows(problem, starts, target)
+    rows = _distinct(problem, found[errors <= TOLERANCE * problem.scale])
+    plus = inside_branch(mechanism, base_rest, "+")(rows)
+    order = np.lexsort((np.linalg.norm(rows, axis=1), ~plus))
+    return [Solution("+" if plus[i] else "-", rows[i]) for i in order]
 
 
 def arm_angles_of_many(
-    mechanism: Mechanism, task: Task, base_rest: Array, targets: Array, branch: str
+    mechanism: Mechanism, task: Task, base_rest: Array, targets: Array, branch: str, criterion: Criterion | None = None
 ) -> tuple[Array, NDArray[np.bool_]]:
     """Arm joints for many targets, shape (T, k), and whether each is reached, shape (T,).
 
-    In closed form for two parallel joints; other arms by Newton steps from `FEW_STARTS` starts, the first to arrive.
+    In closed form for two parallel joints and, with a Newton polish, for full poses of arms with named branches (a
+    branch of one sign takes the first that exists, in the order of NAMES). Redundant arms: the best over the
+    self-motion, by `criterion` or else by `isotropy`, continuous from target to target where the optimum is. Other
+    arms by Newton steps from `FEW_STARTS` starts, the first to arrive.
+
+    base_rest : shape (m,). Returns joints of shape (T, n), zero where a target is not reached.
+    Raises InputError where the branch does not exist on this arm.
     """
     planar = two_joint_arm(mechanism, task, base_rest)
+    inside = inside_branch(mechanism, base_rest, branch)
     if planar is not None:
         first, second, cosine = solve_two_joint_arm(planar, targets[:, 0], targets[:, 1], branch)
-        return np.column_stack([first, second]), np.abs(cosine) <= STRETCHED
-    joints = np.zeros((len(targets), mechanism.N - len(base_rest)))
+        return np.column_stack([first, second]), np.asarray(np.abs(cosine) <= STRETCHED)
+    problem = TipProblem(mechanism, task, base_rest)
+    if problem.n > task.k:
+        chosen = criterion or isotropy(mechanism, task, base_rest)
+        return best_postures(mechanism, task, base_rest, targets, chosen, branch)
+    six = _closed_six(mechanism, task, base_rest)
+    joints = np.zeros((len(targets), problem.n))
     reached = np.zeros(len(targets), dtype=bool)
-    for start in _starts(mechanism, len(base_rest), branch, None)[1 : FEW_STARTS + 1]:
-        open_cells = np.flatnonzero(~reached)
-        starts = np.tile(start, (len(open_cells), 1))
-        found, errors = newton(mechanism, task, base_rest, starts, targets[open_cells])
-        good = (errors <= TOLERANCE * reach(mechanism)) & _on_branch(mechanism, len(base_rest), found, branch)
-        joints[open_cells[good]], reached[open_cells[good]] = found[good], True
+    if six is not None:
+        candidates, exists = _six_candidates(six, problem, targets)
+        tries = [(candidates[:, i], exists[:, i]) for i in matching(branch)]
+    else:
+        starts = spread_starts(mechanism, problem.m, branch, FEW_STARTS)
+        tries = [(np.broadcast_to(start, joints.shape), np.ones(len(targets), dtype=bool)) for start in starts]
+    for begin, offered in tries:
+        cells = np.flatnonzero(~reached & offered)
+        found, errors = solve_rows(problem, begin[cells], targets[cells])
+        good = (errors <= TOLERANCE * problem.scale) & inside(found)
+        joints[cells[good]], reached[cells[good]] = found[good], True
     return joints, reached
 
 
-def _on_branch(mechanism: Mechanism, m: int, joints: Array, branch: str) -> NDArray[np.bool_]:
-    """Whether the elbow is bent to the asked side; True where there is none, or it slides."""
-    elbow = elbow_of(joints.shape[1])
-    if elbow is None or mechanism.joint_types[m + elbow] != "revolute":
-        return np.ones(len(joints), dtype=bool)
-    return np.array((np.sin(joints[:, elbow]) >= 0.0) == (branch == "+"))
+def _planar_angles(planar: TwoJointArm, target: Array, branch: str) -> tuple[Array | None, float]:
+    first, second, cosine = solve_two_joint_arm(planar, target[0], target[1], branch)
+    if abs(float(cosine)) <= STRETCHED:
+        return np.array([first, second]), 0.0
+    distance = float(np.hypot(*(target - planar.shoulder)))
+    return None, max(distance - planar.upper - planar.fore, abs(planar.upper - planar.fore) - distance, 0.0)
 
 
-def newton(mechanism: Mechanism, task: Task, base_rest: Array, starts: Array, target: Array) -> tuple[Array, Array]:
-    """Improve every row of `starts`, shape (S, n), towards one target or a target each; joints and remaining errors."""
-    m = len(base_rest)
-    revolute = np.array([kind == "revolute" for kind in mechanism.joint_types[m:]])
-    joints = starts.copy()
-    aim = target_at(task, np.broadcast_to(target, (len(starts), task.k)))
-    damping = np.full((len(starts), 1, 1), 1e-3)
-    error, J = _error_and_jacobian(mechanism, task, base_rest, joints, aim)
-    for _ in range(STEPS):
-        gram = J @ np.swapaxes(J, -1, -2) + damping * np.eye(task.k)
-        step = -(np.swapaxes(J, -1, -2) @ np.linalg.solve(gram, error[..., None]))[..., 0]
-        step *= np.minimum(1.0, LARGEST_STEP / np.maximum(np.abs(step).max(axis=1, keepdims=True), 1e-300))
-        trial = joints + step
-        trial_error, trial_J = _error_and_jacobian(mechanism, task, base_rest, trial, aim)
-        better = np.linalg.norm(trial_error, axis=1) < np.linalg.norm(error, axis=1)
-        joints[better], error[better], J[better] = trial[better], trial_error[better], trial_J[better]
-        damping = np.where(better[:, None, None], damping * 0.1, np.minimum(damping * 10.0, 1e3))
-    joints[:, revolute] = np.pi - np.mod(np.pi - joints[:, revolute], 2.0 * np.pi)
-    return joints, np.linalg.norm(error, axis=1)
+def _closed_six(mechanism: Mechanism, task: Task, base_rest: Array) -> SixJointArm | None:
+    """The geometry with which a full pose is solved in closed form, or None."""
+    return six_joint_arm(mechanism, base_rest) if task.k == 6 else None
 
 
-def _error_and_jacobian(
-    mechanism: Mechanism, task: Task, base_rest: Array, joints: Array, target: Target
-) -> tuple[Array, Array]:
-    frames = forward(mechanism, (*map(float, base_rest), *joints.T))
-    J = stack(task_jacobian(frames, task.indices))[..., len(base_rest) :]
-    return task_error(frames, task, target), np.array(np.broadcast_to(J, (len(joints), *J.shape[-2:])))
+def _six_candidates(six: SixJointArm, problem: TipProblem, targets: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Closed-form joints, shape (T, 8, 6), sorted into the places of NAMES, and whether each exists, shape (T, 8)."""
+    aim = problem.aim(targets, len(targets))
+    raw, exists = solve_six_joint_arm(six, aim.position, aim.rotation)
+    cells, slots = np.nonzero(exists)
+    place = places(six, raw[cells, slots])
+    joints, there = np.zeros_like(raw), np.zeros(exists.shape, dtype=bool)
+    joints[cells, place], there[cells, place] = raw[cells, slots], True
+    return problem.wrapped(joints.reshape(-1, 6)).reshape(joints.shape), there
 
 
-def _starts(mechanism: Mechanism, m: int, branch: str, near: Array | None) -> Array:
-    """Low-discrepancy starts over the arm's joints, the elbow on the asked side; the first is `near`."""
-    from scipy.stats import qmc  # half a second to import, and only arms without a closed form need it
+def _six_solutions(
+    six: SixJointArm, mechanism: Mechanism, task: Task, base_rest: Array, target: Array
+) -> list[Solution]:
+    problem = TipProblem(mechanism, task, base_rest)
+    aim = problem.aim(target, 1)
+    raw, exists = solve_six_joint_arm(six, aim.position, aim.rotation)
+    starts = raw[0][exists[0]]
+    if six.distance > ROUNDED:  # two candidates may merge where the arm itself has two solutions
+        starts = np.concatenate([starts, *(spread_starts(mechanism, problem.m, sign, STARTS) for sign in BRANCHES[:2])])
+    found, errors = solve_rows(problem, starts, target)
+    rows = _distinct(problem, found[errors <= TOLERANCE * problem.scale])
+    place = places(six, rows)
+    return [Solution(NAMES[place[i]], rows[i]) for i in np.argsort(place, kind="stable")]
 
-    n = mechanism.N - m
-    unit = qmc.Halton(n, scramble=False).random(STARTS)
-    span = np.array([np.pi if kind == "revolute" else reach(mechanism) for kind in mechanism.joint_types[m:]])
-    starts = (2.0 * unit - 1.0) * span
-    elbow = elbow_of(n)
-    if elbow is not None:
-        starts[:, elbow] = np.abs(starts[:, elbow]) * (1.0 if branch == "+" else -1.0)
-    if near is not None:
-        starts[0] = near
-    return np.asarray(starts)
 
-
-def reach(mechanism: Mechanism) -> float:
-    """Sum of all link offsets: no tip is farther out while prismatic joints stand at zero."""
-    offsets = np.linalg.norm(mechanism.placement_position, axis=1).sum()
-    return float(offsets + np.linalg.norm(mechanism.tool_position)) or 1.0
+def _distinct(problem: TipProblem, rows: Array) -> Array:
+    """The first of each cluster of rows; turns count modulo a full one."""
+    kept: list[Array] = []
+    for row in rows:
+        gaps = [np.where(problem.revolute, 2.0 * np.sin(0.5 * (row - other)), row - other) for other in kept]
+        if all(np.abs(gap).max() > DISTINCT for gap in gaps):
+            kept.append(row)
+    return np.array(kept).reshape(-1, problem.n)

@@ -11,14 +11,14 @@ from flexbase.errors import InputError
 from flexbase.model.units import DAMPING_UNIT, UNIT
 
 ROWS = ("x", "y", "z", "rx", "ry", "rz")
-BRANCHES = ("+", "-")
+BRANCHES = ("+", "-", "+++", "++-", "+-+", "+--", "-++", "-+-", "--+", "---")
 
 
 @dataclass(frozen=True)
 class Task:
     """Rows of the tool's motion in world axes: positions x y z [m], rotations rx ry rz [rad].
 
-    branch : default sign of the elbow, "+" for 0 < elbow angle < pi
+    branch : default sign of the elbow, "+" for 0 < elbow angle < pi; or the three signs of shoulder, elbow and wrist
     """
 
     rows: tuple[str, ...]
@@ -68,7 +68,13 @@ def checked_gains(gains: Gains, k: int) -> Gains:
 
 
 def check_branch(branch: str) -> str:
-    """Return an elbow branch. Raises InputError."""
+    """Return a branch: the elbow's sign, or the signs of shoulder, elbow and wrist. Raises InputError.
+
+    Whether the arm has a shoulder and a wrist to name is seen where the branch is used.
+    """
     if branch not in BRANCHES:
-        raise InputError(f'branch: "{branch}" is unknown. Give "+" (0 < elbow angle < pi) or "-".')
+        raise InputError(
+            f'branch: "{branch}" is unknown. Give "+" (0 < elbow angle < pi) or "-"; for six joints also three signs, '
+            'of shoulder, elbow and wrist, such as "+-+".'
+        )
     return branch

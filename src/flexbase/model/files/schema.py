@@ -135,7 +135,9 @@ class TaskTable(Table):
     """What is controlled."""
 
     rows: list[Literal["x", "y", "z", "rx", "ry", "rz"]] = Field(min_length=1, description="world axes, in task order")
-    branch: Literal["+", "-"] = Field("+", description="default elbow: + is 0 < elbow angle < pi")
+    branch: Literal["+", "-", "+++", "++-", "+-+", "+--", "-++", "-+-", "--+", "---"] = Field(
+        "+", description="default elbow: + is 0 < elbow angle < pi; of six joints also shoulder, elbow, wrist"
+    )
 
 
 class ControlTable(Table):
