@@ -12,19 +12,18 @@ from flexbase.control.compensator import Compensator
 from flexbase.design.certificate import certify
 from flexbase.design.registry import method
 from flexbase.errors import Infeasible, InputError
+from flexbase.linear.aligned_gain import least_gain
 from flexbase.linear.margins import arm_on_free_base
 from flexbase.linear.modal import modes
 from flexbase.measures.compensability import coupling
+from flexbase.measures.exact_design import CLEARANCE, RAISE
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
 
 OBJECTIVES = ("least-gain", "least-radius")
-SMALLEST_INERTIA = 1e-3  # of the arm's own, kept in the directions that the targets leave free
-RAISE = 1.25  # default target over the present frequency; the paper's example raises it by 1.2515
 BORDER = 0.1  # redundant arms: distance of alpha from [-1, 0], where the mode would be lost to force or tip
 ATTAINED = 1.0 - 1e-9  # square of the radius below which the best self-motion exists
 UNDRIVEN = 1e-9  # cosine of y and t below which the self-motion does not drive the base
-CLEARANCE = 1.02  # default target over the lowest reachable frequency
 
 
 class Compensability(NamedTuple):
@@ -78,7 +77,10 @@ def exact(
         raise InputError(f'objective: "{objective}" is unknown. Give one of {", ".join(OBJECTIVES)}.')
     facts, frequency = (_redundant if pose.arm.n > pose.arm.k else _square)(pose, natural_frequency)
     alpha = _alpha(pose, facts, frequency)
-    E = (_least_gain if objective == "least-gain" else _least_radius)(pose, facts, alpha)
+    if objective == "least-gain":
+        E: Array = np.array(least_gain(pose.M[1:, 1:].tolist(), facts.z.tolist(), facts.y.tolist(), alpha))
+    else:
+        E = _least_radius(pose, facts, alpha)
     residual = (pose.M[1:, 1:] - E) @ facts.z - facts.y / alpha
     relative = float(np.linalg.norm(residual) / np.linalg.norm(facts.y / alpha))
     return certify(pose, "exact", E, target_residual=relative, gains=gains)
@@ -185,23 +187,6 @@ def _check_reachable(pose: Pose, frequency: float, slowest: float) -> None:
         )
 
 
-def _least_gain(pose: Pose, facts: Compensability, alpha: float) -> Array:
-    """Smallest ||E||_F with (Mhat - E) z = y/alpha and Mhat - E > 0.
-
-    In the basis [z/|z|, Z] the target fixes all of E but the block Z^T E Z, and X > 0 exactly where
-    T = Z^T X Z - Z^T y y^T Z / (alpha y.z) is positive: a projection on positive matrices, by eigenvalues.
-    """
-    Mhat, y, z = pose.M[1:, 1:], facts.y, facts.z
-    missing = Mhat @ z - y / alpha
-    square = float(z @ z)
-    E = (np.outer(missing, z) + np.outer(z, missing)) / square - np.outer(z, z) * float(missing @ z) / square**2
-    Z = _complement(z)
-    wanted = Z.T @ (Mhat - np.outer(y, y) / (alpha * facts.product)) @ Z
-    values, vectors = np.linalg.eigh(wanted)
-    kept = np.maximum(values, SMALLEST_INERTIA * np.linalg.eigvalsh(Mhat)[0])
-    return np.asarray(E + Z @ (vectors * (values - kept)) @ vectors.T @ Z.T)
-
-
 def _least_radius(pose: Pose, facts: Compensability, alpha: float) -> Array:
     """Smallest rho(Ms^-1 E) with (Mhat - E) z = y/alpha.
 
@@ -236,8 +221,3 @@ def _symmetric_turn(start: Array, goal: Array) -> Array:
     across = across / sine
     basis = np.column_stack([start, across])
     return np.asarray(basis @ np.array([[cosine, sine], [sine, -cosine]]) @ basis.T)
-
-
-def _complement(z: Array) -> Array:
-    """Orthonormal basis of the directions orthogonal to z, shape (n, n - 1)."""
-    return np.linalg.svd(z[None, :])[2][1:].T

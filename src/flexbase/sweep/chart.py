@@ -1,9 +1,10 @@
-"""A plane of a sweep, ready to be drawn."""
+"""A sweep ready to be drawn: thinned to what a picture can show, each measure and mode a layer, whatever the axes."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,51 +13,148 @@ from flexbase.checks import Array
 from flexbase.errors import InputError
 from flexbase.measures import MEASURES
 from flexbase.sweep.axis import Axis
+from flexbase.sweep.layout import MODE
+from flexbase.sweep.status import statuses_of
 from flexbase.sweep.summary import measures_of
 
 LARGEST = 2000  # cells along an axis that are drawn: more are thinned out evenly
+SLICES = 6  # of a third axis
+POINTS = 200_000  # samples: the first so many, which are as evenly spread as all
+
+
+class Layer(NamedTuple):
+    """One measure, or one mode of it.
+
+    values : shape of the chart's status, NaN where there is none
+    zero_is : what zero means, or None where it means nothing
+    zero_line : where the values only touch zero, a companion of the same shape that changes its sign near 0 there
+    """
+
+    name: str
+    title: str
+    unit: str
+    values: Array
+    zero_is: str | None = None
+    zero_line: Array | None = None
+
+    @property
+    def known(self) -> Array:
+        """The values that there are, in a row."""
+        return self.values[np.isfinite(self.values)]
 
 
 @dataclass(frozen=True, eq=False)
 class Chart:
-    """Measures over a plane; the first axis runs along columns (x), the second along rows (y).
+    """Layers over one to three axes, or over samples.
 
-    values : a measure's name -> shape (rows, columns), or (rows, columns, m) for measures of each mode; NaN unless OK
-    status : shape (rows, columns), a key of `STATUS`
-    zero_lines : for measures that only touch zero, a companion (same shape) that changes its sign near 0 there
+    remark : what is special about the sweep, such as a compensator or a value that stands still, or nothing
+    axes : of the cells, fastest first: x, y, and the axis of slices; for samples, their number
+    status : shape (slices, rows, columns), (rows, columns) or (cells,); `meanings` says what its codes are
+    drawn : of samples, the coordinates that were drawn, each with one value a sample
     """
 
     robot: str
-    axes: tuple[Axis, Axis]
-    values: dict[str, Array]
+    remark: str
+    axes: tuple[Axis, ...]
+    layers: tuple[Layer, ...]
     status: NDArray[np.int8]
-    compensated: bool
-    zero_lines: dict[str, Array]
+    meanings: Mapping[int, str]
+    drawn: tuple[Axis, ...] = ()
 
-    def count(self, status: int) -> int:
-        """How many cells have a status."""
-        return int(np.count_nonzero(self.status == status))
+    @property
+    def heading(self) -> str:
+        """Robot and remark."""
+        return f"{self.robot}, {self.remark}" if self.remark else self.robot
+
+    def missing(self, layer: Layer) -> dict[int, NDArray[np.bool_]]:
+        """Cells without a value in a layer, by their status; none where a value exists, whatever the status."""
+        gaps = ~np.isfinite(layer.values)
+        found = {code: gaps & (self.status == code) for code in self.meanings}
+        return {code: cells for code, cells in found.items() if cells.any()}
+
+    def slices(self) -> Iterator[tuple[str, Chart]]:
+        """Every value of the third axis in words, and the chart of the plane there."""
+        axis = self.axes[2]
+        for i, value in enumerate(axis.values):
+            layers = tuple(
+                one._replace(values=one.values[i], zero_line=None if one.zero_line is None else one.zero_line[i])
+                for one in self.layers
+            )
+            words = said(axis.name, float(value), axis.unit)
+            yield words, replace(self, axes=self.axes[:2], layers=layers, status=self.status[i])
 
 
-def chart_of(dataset: Any) -> Chart:
-    """The plane of a sweep over two axes; of more, choose with `isel` first. Raises InputError."""
-    plane = dataset.squeeze(drop=True) if dataset["status"].ndim > 2 else dataset
-    dims = plane["status"].dims
-    if len(dims) != 2:
+def said(name: str, value: float, unit: str) -> str:
+    """A coordinate in words, such as payload = 2.5 kg."""
+    return f"{name} = {value:.4g}" if unit == "1" else f"{name} = {value:.4g} {unit}"
+
+
+def chart_of(dataset: Any, largest: int = LARGEST, slices: int = SLICES) -> Chart:
+    """The picture of a sweep over up to three axes, or over samples; only the cells that it shows are read.
+
+    largest : cells along an axis; slices : of the third, evenly chosen with both ends
+    Raises InputError for more axes, for a single cell, and for what is no sweep.
+    """
+    if "status" not in dataset or not measures_of(dataset):
+        raise InputError("plot: this dataset holds no sweep. Give what flexbase.sweep or open_dataset returned.")
+    dims = tuple(dim for dim in dataset["status"].dims if dataset.sizes[dim] > 1)
+    plane = dataset.isel({dim: 0 for dim in dataset["status"].dims if dim not in dims})
+    if not dims:
+        raise InputError("plot: a single cell makes no picture. Read it with flexbase.summary, or ask for more cells.")
+    if len(dims) > 3:
         raise InputError(
-            f"plot: this sweep has {len(dims)} axes ({', '.join(dims)}), a picture has two. Choose values of the others "
-            "with dataset.isel or dataset.sel."
+            f"plot: this sweep has {len(dims)} axes ({', '.join(dims)}), a picture has up to three. Choose values of the "
+            f'others, such as dataset.sel({dims[0]}=..., method="nearest"), or flexbase draw --at {dims[0]}=...'
         )
-    plane = plane.isel({dim: slice(None, None, -(-plane.sizes[dim] // LARGEST)) for dim in dims}).load()
-    axes = tuple(Axis(dim, plane[dim].attrs["units"], plane[dim].values) for dim in reversed(dims))
-    values = {name: plane[name].values for name in measures_of(plane)}
-    lines = {name: MEASURES[name].zero_line for name in values}
-    zero_lines = {name: plane[line].values for name, line in lines.items() if line in plane}
+    samples = dims == ("sample",)
+    plane = plane.isel({dim: _thinned(plane.sizes[dim], largest) for dim in dims[-2:]}) if not samples else plane
+    plane = plane.isel({dim: _chosen(plane.sizes[dim], slices) for dim in dims[:-2]})
+    plane = (plane.isel(sample=slice(0, POINTS)) if samples else plane).load()
+    coordinates = [name for name in plane.coords if samples and plane[name].dims == dims and name not in dims]
     return Chart(
         str(plane.attrs["robot"]),
-        (axes[0], axes[1]),
-        values,
+        _remark(plane),
+        tuple(_axis(plane, dim) for dim in reversed(dims)),
+        tuple(_layers(plane, dims)),
         plane["status"].values,
-        bool(plane.attrs["compensated"]),
-        zero_lines,
+        statuses_of(plane),
+        tuple(_axis(plane, name) for name in coordinates),
     )
+
+
+def _thinned(size: int, largest: int) -> slice:
+    """Every so many cells, as far from one end as from the other."""
+    step = -(-size // largest)
+    return slice((size - 1) % step // 2, None, step)
+
+
+def _chosen(size: int, slices: int) -> list[int]:
+    return np.unique(np.linspace(0, size - 1, min(slices, size)).round().astype(int)).tolist()
+
+
+def _axis(plane: Any, name: str) -> Axis:
+    return Axis(name, str(plane[name].attrs.get("units", "1")), plane[name].values)
+
+
+def _layers(plane: Any, dims: tuple[str, ...]) -> Iterator[Layer]:
+    for name in measures_of(plane):
+        variable = plane[name]
+        unit, zero_is = str(variable.attrs["units"]), variable.attrs.get("zero_is")
+        line = MEASURES[name].zero_line if zero_is == MEASURES[name].zero_is else None
+        companion = plane[line] if line in plane else None
+        if MODE not in variable.dims:
+            yield Layer(name, name, unit, variable.values, zero_is)
+            continue
+        several = plane.sizes[MODE] > 1
+        for i in range(plane.sizes[MODE]):
+            title = f"{name}, mode {i + 1}" if several else name
+            values = variable.isel({MODE: i}).values
+            yield Layer(name, title, unit, values, zero_is, None if companion is None else companion[..., i].values)
+
+
+def _remark(plane: Any) -> str:
+    """What the sweep's attributes say, and where axes that do not show stand."""
+    still = [name for name in plane.coords if not plane[name].dims and name not in (MODE, "sample")]
+    words = [said(name, float(plane[name]), str(plane[name].attrs.get("units", "1"))) for name in still]
+    state = plane.attrs.get("difference") or ("compensated" if plane.attrs["compensated"] else "")
+    return ", ".join([state, *words] if state else words)

@@ -46,6 +46,7 @@ class _Printer(Emitter):
         self._slots: dict[int, str] = {}
         self._masks: dict[str, str] = {}
         self._turned: dict[str, tuple[str, str]] = {}
+        self._inverses: dict[str, str] = {}
 
     def step(self, i: Instruction) -> None:
         operands = [self._slots[slot] for slot in i.arguments]
@@ -68,8 +69,10 @@ class _Printer(Emitter):
 
     def _arithmetic(self, operation: str, x: list[str]) -> str:
         match operation:
-            case "ADD" | "SUB" | "MUL" | "DIV" | "NEG":
+            case "ADD" | "SUB" | "MUL" | "NEG":
                 return str(getattr(self, operation.lower())(*x))
+            case "DIV":
+                return self.mul(x[0], self._inverse(x[1]))
             case "ASSIGN":
                 return x[0]
             case "SQ":
@@ -77,7 +80,7 @@ class _Printer(Emitter):
             case "TWICE":
                 return self.add(x[0], x[0])
             case "INV":
-                return self.div(self.constant(1.0), x[0])
+                return self._inverse(x[0])
             case "SQRT" | "FABS" | "FLOOR":
                 return self.call(operation.lower(), x[0])
             case "FMIN" | "FMAX":
@@ -92,6 +95,12 @@ class _Printer(Emitter):
             case "ATAN2":
                 return arc_tangent(self, *x)
         raise NotImplementedError(operation)
+
+    def _inverse(self, x: str) -> str:
+        """1/x, once a value: a division costs as much as twenty multiplications, and pivots and lengths divide often."""
+        if x not in self._inverses:
+            self._inverses[x] = self.div(self.constant(1.0), x)
+        return self._inverses[x]
 
     def _logic(self, operation: str, masks: list[str]) -> str:
         if operation == "NOT":
