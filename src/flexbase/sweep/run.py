@@ -13,9 +13,9 @@ from flexbase.checks import choose
 from flexbase.errors import FlexbaseWarning, InputError, MissingExtra
 from flexbase.linear.linearise import HasGain
 from flexbase.measures import MEASURES, Measure
-from flexbase.model.base import Base
 from flexbase.plant import Plant
 from flexbase.sweep.axis import block_shape, boxes
+from flexbase.sweep.caveats import check_measures
 from flexbase.sweep.domain import RANDOM, SAMPLINGS, Grid
 from flexbase.sweep.evaluate import AUTO, COMPILED, ENGINES, ROWS
 from flexbase.sweep.executors import Result, by_dask, by_threads
@@ -73,7 +73,7 @@ def sweep(
     """
     names = [measures] if isinstance(measures, str) else list(measures)
     chosen = tuple(choose("measure", name, MEASURES) for name in dict.fromkeys(names))
-    _check(plant, chosen)
+    check_measures(plant, chosen, "map")
     place = _place(plant, over, shape, bounds, branch, axes, hold, dict(vary or {}), sampling, seed)
     E = None if compensator is None else _gain(plant, compensator)
     if store is None:
@@ -186,44 +186,11 @@ def _place(
     raise InputError(f'over: "{over}" is unknown. Give "tip", "joints" or "samples".')
 
 
-def _check(plant: Plant, chosen: Sequence[Measure]) -> None:
-    arm = plant.arm
-    if arm.has_gravity:
-        warnings.warn(
-            f"map: {plant.name} has gravity; its sag and stiffness are left out.", FlexbaseWarning, stacklevel=3
-        )
-    if any(one.per_mode for one in chosen) and not _proportional(arm.base):
-        warnings.warn(
-            f"map: the damping of {plant.name} couples the modes; a map shows those of the undamped base.",
-            FlexbaseWarning,
-            stacklevel=3,
-        )
-    for one in chosen:
-        if missing := one.needs(arm.m, arm.n, arm.k):
-            raise InputError(
-                f"measure {one.name}: {missing} needed, {plant.name} has {arm.m} base joints, {arm.n} arm joints and "
-                f"{arm.k} task rows."
-            )
-        if one.slow and arm.gains is None:
-            raise InputError(
-                f"measure {one.name}: task gains needed, {plant.name} has none. Give [control] in its project file."
-            )
-
-
 def _companions(plant: Plant, chosen: Sequence[Measure]) -> tuple[Measure, ...]:
     """Measures that change their sign where one of the chosen only touches zero: pictures draw it by them."""
     arm = plant.arm
     lines = [MEASURES[one.zero_line] for one in chosen if one.zero_line]
     return tuple(line for line in lines if line not in chosen and not line.needs(arm.m, arm.n, arm.k))
-
-
-def _proportional(base: Base) -> bool:
-    """Whether mode shapes are real in every configuration: no damping, one joint, or damping like the stiffness."""
-    D, K = base.damping, base.stiffness
-    if base.m <= 1 or not D.any():
-        return True
-    ratio = np.trace(D) / np.trace(K)
-    return bool(np.abs(D - ratio * K).max() <= 1e-12 * np.abs(D).max())
 
 
 def _gain(plant: Plant, compensator: HasGain) -> np.ndarray:
