@@ -21,13 +21,13 @@ def check_measures(plant: Plant, chosen: Sequence[Measure], asker: str) -> None:
     arm = plant.arm
     if arm.has_gravity:
         warnings.warn(
-            f"{asker}: {plant.name} has gravity; its sag and stiffness are left out.", FlexbaseWarning, stacklevel=4
+            f"{asker}: {plant.name} has gravity; its sag and stiffness are left out.", FlexbaseWarning, stacklevel=3
         )
     if any(one.per_mode for one in chosen) and not proportional(arm.base):
         warnings.warn(
             f"{asker}: the damping of {plant.name} couples the modes; values are those of the undamped base.",
             FlexbaseWarning,
-            stacklevel=4,
+            stacklevel=3,
         )
     for one in chosen:
         if missing := one.needs(arm.m, arm.n, arm.k):
