@@ -142,6 +142,33 @@ def test_joint_points_are_where_the_geometry_puts_them(paper_pose):
     assert points == pytest.approx(np.array([[0.0, 0.0, 0.0], [0.2, 0.0, 0.0], elbow, tip]), abs=1e-15)
 
 
+@pytest.mark.parametrize("robot", ["ur5e-gantry", "ur5e-pedestal", "ur5e-platform"])
+def test_an_arm_in_space_is_drawn_in_space(robot, tmp_path):
+    """Three axes with names, equal scales, one panel a mode; the resting arm's line runs through its joints and tip.
+
+    The swing reaches 12 % of the arm's extent, both ways; a planar arm keeps its plane.
+    """
+    pose = fb.load(robot).at([0.4, -1.2, 1.3, -0.6, 0.9, 0.3])
+    figure, points, m = plot(fb.modes(pose)), joint_points(pose), pose.arm.m
+    assert len(figure.axes) == m
+    for ax in figure.axes:
+        assert [ax.get_xlabel(), ax.get_ylabel(), ax.get_zlabel()] == ["x [m]", "y [m]", "z [m]"]
+        sides = [np.ptp(limits) for limits in (ax.get_xlim(), ax.get_ylim(), ax.get_zlim())]
+        scales = np.array(sides) / np.array(ax._box_aspect)  # matplotlib has no public way to ask for it in space
+        assert np.ptp(scales) < 1e-9 * scales.max()
+        lines = [np.array(line.get_data_3d()).T for line in ax.lines]
+        assert any(line.shape == points[m:].shape and np.allclose(line, points[m:]) for line in lines)
+        bent = [line for line in lines if line.shape == points[m:].shape and not np.allclose(line, points[m:])]
+        moved = max(np.linalg.norm(line - points[m:], axis=1).max() for line in bent if np.ptp(line[:, 2]) > 0.0)
+        assert 0.03 < moved / np.ptp(points, axis=0).max() < 0.2
+    save_figure(figure, tmp_path / "a.png")
+    assert ink(tmp_path / "a.png") > 0.01
+
+
+def test_a_planar_arm_stays_in_its_plane(results):
+    assert not any(hasattr(ax, "get_zlim") for ax in plot(results["modes"]).axes)
+
+
 def test_a_half_map_is_white_at_zero_and_a_full_one_is_centred(results):
     meshes = [
         next(part for part in ax.collections if type(part).__name__ == "QuadMesh")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -10,21 +9,24 @@ from matplotlib.lines import Line2D
 from flexbase.checks import Array
 from flexbase.linear.modal import Mode, Modes
 from flexbase.report.arm import AXES, draw_arm, drawing_plane, joint_points
-from flexbase.report.style import BLUE, GREEN, INK, RED, SKY, new_figure
-
-SWING = 0.12  # of the arm's extent: the largest drawn displacement
-STEP = 1e-6  # rad or m, to see where a mode moves each joint
-MOST = 6  # modes drawn
+from flexbase.report.arm_in_space import leaves_plane
+from flexbase.report.mode_signs import MOST, arrows, headline, rigid_headline, signs, swung
+from flexbase.report.modes_in_space import modes_in_space
+from flexbase.report.style import BLUE, GREEN, RED, SKY, new_figure
 
 
 def draw_modes(result: Modes) -> Figure:
-    """One panel a mode, softest first; the rigid arm alone where the base has no joint."""
+    """One panel a mode, softest first; the rigid arm alone where the base has no joint. In space where it needs to."""
+    plane = drawing_plane(result.pose)
+    return modes_in_space(result) if leaves_plane(result.pose, plane) else _modes_in_plane(result, plane)
+
+
+def _modes_in_plane(result: Modes, plane: tuple[int, int]) -> Figure:
     shown = result.modes[:MOST]
     columns = min(max(len(shown), 1), 3)
     rows = -(-max(len(shown), 1) // columns)
     figure = new_figure(4.4 * columns if columns == 1 else 3.6 * columns, 4.3 * rows)
     axes = figure.subplots(rows, columns, squeeze=False).ravel()
-    plane = drawing_plane(result.pose)
     for ax in axes[max(len(shown), 1) :]:
         ax.set_axis_off()
     for ax in axes[: max(len(shown), 1)]:
@@ -34,29 +36,19 @@ def draw_modes(result: Modes) -> Figure:
         ax.set_ylabel(f"{AXES[plane[1]]} [m]")
         ax.margins(0.12)
     if not shown:
-        axes[0].set_title(f"{result.pose.plant.name}: rigid base, no vibration mode", loc="left")
+        axes[0].set_title(rigid_headline(result), loc="left")
         return figure
     for number, (ax, mode) in enumerate(zip(axes, shown, strict=False), start=1):
         _swing(ax, result, mode, plane)
         _directions(ax, result, mode, plane)
-        ax.set_title(_headline(number, mode), loc="left", fontsize=9)
+        ax.set_title(headline(number, mode), loc="left", fontsize=9)
     figure.legend(handles=_signs(result, plane), loc="outside lower center", ncols=2)
     return figure
 
 
 def _swing(ax: Axes, result: Modes, mode: Mode, plane: tuple[int, int]) -> None:
-    """The arm displaced by the mode's real part, both ways, so far that it can be seen."""
-    pose = result.pose
-    rest = joint_points(pose)
-    shape = np.real(mode.shape)
-    speed = (joint_points(pose, pose.q + STEP * shape) - rest) / STEP
-    fastest = float(np.linalg.norm(speed, axis=1).max())
-    if fastest == 0.0:
-        return
-    amplitude = SWING * float(np.ptp(rest, axis=0).max()) / fastest
-    for sign, color in ((1.0, BLUE), (-1.0, SKY)):
-        bent = joint_points(pose, pose.q + sign * amplitude * shape)[:, plane]
-        draw_arm(ax, bent, pose.arm.m, color=color, alpha=0.75, width=1.4, joints=False)
+    for bent, color in zip(swung(result.pose, mode), (BLUE, SKY), strict=False):
+        draw_arm(ax, bent[:, plane], result.pose.arm.m, color=color, alpha=0.75, width=1.4, joints=False)
 
 
 def _directions(ax: Axes, result: Modes, mode: Mode, plane: tuple[int, int]) -> None:
@@ -64,13 +56,9 @@ def _directions(ax: Axes, result: Modes, mode: Mode, plane: tuple[int, int]) -> 
     pose = result.pose
     if not _has_directions(result, mode, plane):
         return
-    left, _, right = np.linalg.svd(mode.residue)
     tip = joint_points(pose)[-1, plane]
-    length = 0.3 * float(np.ptp(joint_points(pose), axis=0).max())
-    for vector, color in ((left[:, 0], RED), (right[0], GREEN)):
-        rows = pose.arm.task.indices
-        seen = [vector[rows.index(axis)] if axis in rows else 0.0 for axis in plane]
-        _arrow(ax, tip, length * np.array(seen), color)
+    for span, color in zip(arrows(pose, mode), (RED, GREEN), strict=True):
+        _arrow(ax, tip, span[list(plane)], color)
 
 
 def _has_directions(result: Modes, mode: Mode, plane: tuple[int, int]) -> bool:
@@ -85,21 +73,5 @@ def _arrow(ax: Axes, start: Array, span: Array, color: str) -> None:
     ax.plot(*head, alpha=0.0)  # lets the axes grow to hold the arrow
 
 
-def _headline(number: int, mode: Mode) -> str:
-    alignment = "undefined" if mode.alignment is None else f"{mode.alignment:.3f}"
-    return (
-        f"mode {number}: {mode.label}\n"
-        f"$\\omega$ = {mode.frequency:.1f} rad/s, $\\zeta$ = {mode.damping_ratio:.2g}, w = {mode.robustness:.3g}\n"
-        f"alignment {alignment}"
-    ).replace("-", "−")
-
-
 def _signs(result: Modes, plane: tuple[int, int]) -> list[Line2D]:
-    signs = [
-        Line2D([], [], color=INK, linewidth=3.0, label="at rest"),
-        Line2D([], [], color=BLUE, linewidth=1.6, label="mode shape, both ways"),
-    ]
-    if any(_has_directions(result, mode, plane) for mode in result.modes[:MOST]):
-        signs.insert(1, Line2D([], [], color=RED, linewidth=1.6, label="how the mode moves the tip (a)"))
-        signs.append(Line2D([], [], color=GREEN, linewidth=1.6, label="tip force that drives it (b)"))
-    return signs
+    return signs(any(_has_directions(result, mode, plane) for mode in result.modes[:MOST]))
