@@ -68,9 +68,7 @@ def test_kernel_is_the_modal_analysis(name: str) -> None:
     for cell in np.flatnonzero(found.status == OK)[:20]:
         modes = fb.modes(plant.at(joints[:, cell]))
         frequencies = [mode.frequency for mode in modes]
-        light = (
-            1e-9 if plant.arm.m == 1 else 5e-3
-        )  # real shapes: else to the damping squared
+        light = 1e-9 if plant.arm.m == 1 else 5e-3  # real shapes: else to the damping squared
         assert found.values["frequency"][cell] == pytest.approx(frequencies, rel=light)
         if plant.arm.m == 1 or not damping.any():
             assert found.values["robustness"][cell, 0] == pytest.approx(modes[0].robustness, rel=1e-9, abs=1e-13)

@@ -90,27 +90,15 @@ def said(name: str, value: float, unit: str) -> str:
 
 
 def chart_of(dataset: Any, largest: int = LARGEST, slices: int = SLICES) -> Chart:
-    """The picture of a sweep over up to three axes, or over samples; only the cells that it shows are read.
+    """The picture of a sweep over up to three axes, or over samples; only the cells that it shows are kept in memory.
 
-    largest : cells along an axis; slices : of the third, evenly chosen with both ends
+    largest, slices : as `thinned` takes them
     Raises InputError for more axes, for a single cell, and for what is no sweep.
     """
-    if "status" not in dataset or not measures_of(dataset):
-        raise InputError("plot: this dataset holds no sweep. Give what flexbase.sweep or open_dataset returned.")
-    dims = tuple(dim for dim in dataset["status"].dims if dataset.sizes[dim] > 1)
-    plane = dataset.isel({dim: 0 for dim in dataset["status"].dims if dim not in dims})
-    if not dims:
-        raise InputError("plot: a single cell makes no picture. Read it with flexbase.summary, or ask for more cells.")
-    if len(dims) > 3:
-        raise InputError(
-            f"plot: this sweep has {len(dims)} axes ({', '.join(dims)}), a picture has up to three. Choose values of the "
-            f'others, such as dataset.sel({dims[0]}=..., method="nearest"), or flexbase draw --at {dims[0]}=...'
-        )
-    samples = dims == ("sample",)
-    plane = plane.isel({dim: _thinned(plane.sizes[dim], largest) for dim in dims[-2:]}) if not samples else plane
-    plane = plane.isel({dim: _chosen(plane.sizes[dim], slices) for dim in dims[:-2]})
-    plane = (plane.isel(sample=slice(0, POINTS)) if samples else plane).load()
-    coordinates = [name for name in plane.coords if samples and plane[name].dims == dims and name not in dims]
+    plane = thinned(dataset, largest, slices)
+    dims = _dims(plane)
+    plane = plane.isel({dim: 0 for dim in plane["status"].dims if dim not in dims}).load()
+    coordinates = [name for name in plane.coords if _is_drawn(plane, name, dims)]
     return Chart(
         str(plane.attrs["robot"]),
         _remark(plane),
@@ -122,6 +110,37 @@ def chart_of(dataset: Any, largest: int = LARGEST, slices: int = SLICES) -> Char
     )
 
 
+def thinned(dataset: Any, largest: int = LARGEST, slices: int = SLICES) -> Any:
+    """The cells of a sweep that a picture shows, still unread: evenly chosen, of samples the first.
+
+    largest : cells along an axis; slices : of a third axis, both ends among them
+    Raises InputError for more than three axes, for a single cell, and for what is no sweep.
+    """
+    if "status" not in dataset or not measures_of(dataset):
+        raise InputError("plot: this dataset holds no sweep. Give what flexbase.sweep or open_dataset returned.")
+    dims = _dims(dataset)
+    if not dims:
+        raise InputError("plot: a single cell makes no picture. Read it with flexbase.summary, or ask for more cells.")
+    if len(dims) > 3:
+        raise InputError(
+            f"plot: this sweep has {len(dims)} axes ({', '.join(dims)}), a picture has up to three. Choose values of the "
+            f'others, such as dataset.sel({dims[0]}=..., method="nearest"), or flexbase draw --at {dims[0]}=...'
+        )
+    if dims == ("sample",):
+        return dataset.isel(sample=slice(0, POINTS))
+    chosen: dict[str, Any] = {dim: _thinned(dataset.sizes[dim], largest) for dim in dims[-2:]}
+    return dataset.isel({**chosen, **{dim: _chosen(dataset.sizes[dim], slices) for dim in dims[:-2]}})
+
+
+def _dims(dataset: Any) -> tuple[str, ...]:
+    """Axes with more than one value."""
+    return tuple(dim for dim in dataset["status"].dims if dataset.sizes[dim] > 1)
+
+
+def _is_drawn(plane: Any, name: str, dims: tuple[str, ...]) -> bool:
+    return dims == ("sample",) and plane[name].dims == dims and name not in dims
+
+
 def _thinned(size: int, largest: int) -> slice:
     """Every so many cells, as far from one end as from the other."""
     step = -(-size // largest)
@@ -129,7 +148,11 @@ def _thinned(size: int, largest: int) -> slice:
 
 
 def _chosen(size: int, slices: int) -> list[int]:
-    return np.unique(np.linspace(0, size - 1, min(slices, size)).round().astype(int)).tolist()
+    """Both ends and some between, at equal distances where four or more can be."""
+    if size <= slices:
+        return list(range(size))
+    even = [count for count in range(4, slices + 1) if (size - 1) % (count - 1) == 0]
+    return np.linspace(0, size - 1, max(even, default=slices)).round().astype(int).tolist()
 
 
 def _axis(plane: Any, name: str) -> Axis:

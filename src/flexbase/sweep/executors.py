@@ -66,7 +66,7 @@ def _client(scheduler: str | None, workers: int | None) -> Iterator[Any]:
             yield client
         return
     try:
-        client = distributed.Client(scheduler, timeout=10)
+        client = distributed.Client(scheduler, timeout=5)
     except (OSError, ValueError, TimeoutError) as fault:
         raise InputError(
             f"scheduler: no Dask scheduler answers at {scheduler}. Start one with: dask scheduler; or leave it out."

@@ -15,7 +15,7 @@ from flexbase.model.task import check_branch
 from flexbase.plant import Plant
 from flexbase.sweep.axis import Axis
 from flexbase.sweep.domain import Domain, Grid, Samples
-from flexbase.sweep.parameters import PARAMETERS
+from flexbase.sweep.parameters import Parameter, parameters_of
 
 BENT = 0.5  # rad or m, where joints outside a joint map stand: at zero many arms are stretched
 MARGIN = 1.02  # half-width of the default window, over the arm's reach
@@ -63,7 +63,7 @@ def tip_place(
     planar = two_joint_arm(arm.mechanism, task, arm.base.equilibrium)
     window = _window(plant, planar, varied, task.units) if bounds is None else _checked_bounds(bounds, len(varied))
     names, units = [task.rows[i] for i in varied], [task.units[i] for i in varied]
-    parameters, axes = _axes(names, units, window, _counts(shape, len(varied)), vary)
+    parameters, axes = _axes(names, units, window, _counts(shape, len(varied)), plant, vary)
     branch = check_branch(branch or task.branch)
     if planar is not None:
         side = -1.0 if branch == "-" else 1.0
@@ -86,7 +86,7 @@ def joint_place(
 ) -> Place:
     """A grid over arm joints, the elbow and the one before if none are named; the others stand at `hold`, n values."""
     names, units, varied, held, window = _joint_box(plant, bounds, joints, hold)
-    parameters, axes = _axes(names, units, window, _counts(shape, len(varied)), vary)
+    parameters, axes = _axes(names, units, window, _counts(shape, len(varied)), plant, vary)
     return Place(Grid(axes, parameters), varied, held)
 
 
@@ -105,13 +105,13 @@ def sample_place(
     names, units, varied, held, window = _joint_box(plant, bounds, everything, hold)
     if shape is not None and len(shape) != 1:
         raise InputError(f"shape: {tuple(shape)} given, but samples have one count. Give a single number.")
-    _check_parameters(vary)
+    known = _known_parameters(plant, vary)
     low = [*window[0::2], *(vary[name][0] for name in vary)]
     high = [*window[1::2], *(vary[name][1] for name in vary)]
     domain = Samples(
         _counts(shape, 1)[0] if shape else 10_000,
         (*names, *vary),
-        (*units, *(PARAMETERS[name].unit for name in vary)),
+        (*units, *(known[name].unit for name in vary)),
         np.array(low),
         np.array(high),
         sampling,
@@ -153,28 +153,32 @@ def _axes(
     units: Sequence[str],
     window: Sequence[float],
     counts: Sequence[int],
+    plant: Plant,
     vary: Mapping[str, Range],
 ) -> tuple[int, tuple[Axis, ...]]:
     """How many axes are parameters, and all axes, slowest first."""
-    _check_parameters(vary)
-    outer = [Axis(name, PARAMETERS[name].unit, np.linspace(*vary[name])) for name in vary]
+    known = _known_parameters(plant, vary)
+    outer = [Axis(name, known[name].unit, np.linspace(*vary[name])) for name in vary]
     inner = [
         Axis(name, units[i], np.linspace(window[2 * i], window[2 * i + 1], counts[i])) for i, name in enumerate(names)
     ]
     return len(outer), (*outer, *reversed(inner))
 
 
-def _check_parameters(vary: Mapping[str, Range]) -> None:
+def _known_parameters(plant: Plant, vary: Mapping[str, Range]) -> dict[str, Parameter]:
+    """The plant's parameters by name, once the ranges of those that vary are checked."""
+    known = parameters_of(plant.arm)
     for name, given in vary.items():
-        if name not in PARAMETERS:
-            raise InputError(f'vary: no parameter "{name}". {nearest_name(name, PARAMETERS)}')
+        if name not in known:
+            raise InputError(f'vary: no parameter "{name}". {nearest_name(name, known)}')
         low, high, count = given
-        least = 0.0 if name in ("payload", "damping") else 1e-6
+        least = known[name].least
         if not (least <= low <= high <= FARTHEST and count >= 1):
             raise InputError(
                 f"vary: {name} from {low:g} to {high:g} in {count} values; values from {least:g} to {FARTHEST:g} are "
                 "needed, low before high, and at least one of them."
             )
+    return known
 
 
 def _counts(shape: Sequence[int] | None, axes: int) -> tuple[int, ...]:

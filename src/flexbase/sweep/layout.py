@@ -9,7 +9,7 @@ import numpy as np
 
 from flexbase.sweep.domain import Domain, Samples
 from flexbase.sweep.question import Question
-from flexbase.sweep.status import STATUS
+from flexbase.sweep.status import STATUS, flags
 from flexbase.sweep.store import FINISHED, Field
 
 MODE = "mode"
@@ -30,8 +30,7 @@ def fields_of(question: Question, domain: Domain, block: tuple[int, ...], asked:
         numbers = np.arange(1, question.arm.m + 1)
         said = {"long_name": "vibration mode, slowest first"}
         fields[MODE] = Field("int64", (MODE,), numbers.shape, numbers.shape, said, True, numbers)
-    meanings = {"flag_values": list(STATUS), "flag_meanings": "; ".join(STATUS.values())}
-    fields["status"] = Field("int8", dims, shape, block, meanings)
+    fields["status"] = Field("int8", dims, shape, block, flags(STATUS))
     for one in question.measures:
         said = {"units": one.unit, "long_name": one.purpose}
         said |= {"zero_is": one.zero_is} if one.zero_is else {}

@@ -22,9 +22,10 @@ from flexbase.sweep.executors import Result, by_dask, by_threads
 from flexbase.sweep.grids import Place, Range, joint_place, sample_place, tip_place
 from flexbase.sweep.job import Job, Work
 from flexbase.sweep.layout import empty, fields_of, to_dataset
+from flexbase.sweep.opened import open_dataset
 from flexbase.sweep.question import Question
 from flexbase.sweep.recipe import recipe_of
-from flexbase.sweep.store import FINISHED, identity, open_store
+from flexbase.sweep.store import identity, open_store
 
 LARGEST = 20_000_000  # cells that are kept in memory; more need a store
 WORTH_COMPILING = 200_000  # cells from which a kernel gains more than the half second that it takes to make
@@ -63,7 +64,8 @@ def sweep(
     bounds : low, high of each axis in turn; the arm's reach, or a full turn, if left out
     axes : task rows or arm joints that vary; the first two rows, or the elbow and the joint before, if left out
     hold : over tip, the other task rows; else all n arm joints, used where they do not vary
-    vary : a parameter's name -> (low, high, count), a further axis each; names in `PARAMETERS`
+    vary : a parameter's name -> (low, high, count), a further axis each; names in `PARAMETERS`, or of one
+        joint, such as `stiffness.q1`
     sampling, seed : "random" or "halton"
     engine : "compiled", "rows" (NumPy, no warm-up), or "auto", by the number of cells
     store : a Zarr folder that blocks are written to as they finish; `resume` goes on with one that was interrupted
@@ -114,16 +116,6 @@ def sweep(
     for _ in _reported(run(job, rest), progress, done, total) if rest else ():
         pass
     return open_dataset(job.store)
-
-
-def open_dataset(path: str | Path) -> Any:
-    """A sweep's store as an `xarray.Dataset`; values are read when they are used. Raises InputError."""
-    import xarray
-
-    try:
-        return xarray.open_zarr(path, consolidated=False, chunks=None).drop_vars(FINISHED)
-    except (OSError, ValueError, KeyError) as fault:
-        raise InputError(f"{path}: is no sweep of flexbase's. Give a folder that flexbase map wrote.") from fault
 
 
 def _reported(results: Any, progress: Progress, done: int, total: int) -> Any:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-OK, UNREACHABLE, SINGULAR, INDEFINITE, INFEASIBLE = range(5)
+from collections.abc import Mapping
+from typing import Any
+
+OK, UNREACHABLE, SINGULAR, INDEFINITE, INFEASIBLE, LOST, GAINED = range(7)
 STATUS = {
     OK: "ok",
     UNREACHABLE: "out of reach",
@@ -10,3 +13,15 @@ STATUS = {
     INDEFINITE: "M - E not positive definite",
     INFEASIBLE: "no gain aligns the mode",
 }
+CHANGED = {LOST: "ok before only", GAINED: "ok after only"}  # of differences, beside the others
+
+
+def flags(meanings: Mapping[int, str]) -> dict[str, Any]:
+    """Attributes of a status array, by the conventions of CF metadata."""
+    return {"flag_values": list(meanings), "flag_meanings": "; ".join(meanings.values())}
+
+
+def statuses_of(dataset: Any) -> dict[int, str]:
+    """What the codes of a dataset's status mean."""
+    said = dataset["status"].attrs
+    return dict(zip(map(int, said["flag_values"]), str(said["flag_meanings"]).split("; "), strict=True))

@@ -13,7 +13,7 @@ from flexbase.checks import Array
 from flexbase.errors import InputError
 from flexbase.measures import MEASURES
 from flexbase.sweep.layout import COMPANION, MODE
-from flexbase.sweep.status import STATUS
+from flexbase.sweep.status import statuses_of
 
 PART = 1 << 22  # cells of a store that are looked at together
 LARGEST_TABLE = 4_000_000  # cells written as CSV or JSON
@@ -54,9 +54,9 @@ def extents(dataset: Any) -> list[Extent]:
 
 def counts(dataset: Any) -> dict[int, int]:
     """How many cells have each status; those that none has are left out."""
-    total = np.zeros(len(STATUS), dtype=np.int64)
+    total = np.zeros(1 + max(statuses_of(dataset)), dtype=np.int64)
     for part in _parts(dataset, dataset["status"]):
-        total += np.bincount(part.ravel(), minlength=len(STATUS))
+        total += np.bincount(part.ravel(), minlength=len(total))
     return {code: int(number) for code, number in enumerate(total) if number}
 
 
@@ -70,7 +70,8 @@ def _parts(dataset: Any, variable: Any) -> Iterator[Array]:
 
 def summary(dataset: Any) -> str:
     """A line on the cells and one on each measure."""
-    cells = ", ".join(f"{number} {STATUS[code]}" for code, number in counts(dataset).items())
+    meanings = statuses_of(dataset)
+    cells = ", ".join(f"{number} {meanings[code]}" for code, number in counts(dataset).items())
     lines = [f"{dataset.attrs['robot']}: {dataset['status'].size} cells, {cells}"]
     for one in extents(dataset):
         mode = f" of mode {one.mode}" if one.mode else ""
@@ -95,7 +96,7 @@ def document(dataset: Any) -> dict[str, Any]:
             for name in measures_of(dataset)
         },
         "status": dataset["status"].values.tolist(),
-        "status_codes": {str(code): meaning for code, meaning in STATUS.items()},
+        "status_codes": {str(code): meaning for code, meaning in statuses_of(dataset).items()},
     }
 
 
