@@ -29,7 +29,8 @@ class PlaneOptions:
     hold: Annotated[Vector, option(numbers, "NUMBERS", "over tip: the other rows; else: all arm joints")] = ()
     elbow: Elbow = None
     vary: Annotated[
-        Ranges, option(ranges, "NAME=LO:HI:N", "more axes, with commas: stiffness, damping, link_mass, payload")
+        Ranges,
+        option(ranges, "NAME=LO:HI:N", "more axes: stiffness, damping, payload, link_mass, link_com, stiffness.JOINT"),
     ] = ()
     sampling: Annotated[str, Parameter(metavar="NAME", help="samples: random (if left out) or halton")] = "random"
     seed: Annotated[int, Parameter(metavar="N", help="samples: another seed, other samples")] = 0
