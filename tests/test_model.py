@@ -8,6 +8,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+import flexbase
 from flexbase import FlexbaseWarning, InputError
 from flexbase.checks import check_length, choose, finite_array
 from flexbase.model.base import make_base
@@ -158,3 +159,13 @@ def test_a_massless_direction_is_refused():
     arm = dataclasses.replace(plant.arm, mechanism=empty)
     with pytest.raises(InputError, match=r"inertia matrix.*is not positive definite"):
         dataclasses.replace(plant, arm=arm).at([0.4, 0.9])
+
+
+def test_right_angles_of_a_file_are_literal_zeros():
+    """A URDF's 1.5707963267948966 leaves 2e-16 in a rotation: dropped, so it costs nothing in a traced program."""
+    mechanism = flexbase.load("panda-gantry").arm.mechanism
+    raw = np.abs(mechanism.placement_rotation)
+    kept = np.abs([link.placement_rotation for link in mechanism.links])
+    assert np.any((raw > 0.0) & (raw < 1e-15))  # the file has such entries
+    assert not np.any((kept > 0.0) & (kept < 1e-15))
+    np.testing.assert_allclose(kept, raw, rtol=0.0, atol=1e-15)

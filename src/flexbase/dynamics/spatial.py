@@ -22,7 +22,6 @@ from flexbase.trace.algebra import (
     plus,
     scale,
     sub,
-    transpose,
 )
 
 
@@ -94,13 +93,15 @@ def sum_of_inertias(a: SpatialInertia, b: SpatialInertia) -> SpatialInertia:
 
 def inertia_at_origin(mass: Scalar, com: Vector, inertia: Matrix, rotation: Matrix) -> SpatialInertia:
     """Inertia about the world origin of a body whose frame has `rotation` and whose centre of mass is at `com`."""
-    turned = matmul(matmul(rotation, inertia), transpose(rotation))
-    square = dot(com, com)
-    second = tuple(
-        tuple(add(turned[i][j], mul(mass, sub(square if i == j else 0.0, mul(com[i], com[j])))) for j in range(3))
-        for i in range(3)
-    )
-    return SpatialInertia(mass, scale(mass, com), second)
+    half, first = matmul(rotation, inertia), scale(mass, com)
+    moved = [mul(x, y) for x, y in zip(first, com, strict=True)]
+    second: list[list[Scalar]] = [[0.0] * 3 for _ in range(3)]
+    for i in range(3):
+        one, other = moved[i - 1], moved[i - 2]
+        second[i][i] = add(dot(half[i], rotation[i]), add(one, other))
+        for j in range(i):
+            second[i][j] = second[j][i] = sub(dot(half[i], rotation[j]), mul(first[i], com[j]))
+    return SpatialInertia(mass, first, tuple(map(tuple, second)))
 
 
 def point_mass(mass: Scalar, position: Vector) -> SpatialInertia:

@@ -11,6 +11,7 @@ import numpy as np
 from flexbase.checks import Array
 
 JOINT_TYPES = ("revolute", "prismatic")
+ROUNDING = 1e-15  # an entry of a rotation below which it is zero
 
 
 def _none() -> Array:
@@ -79,7 +80,7 @@ class Mechanism:
             Link(
                 self.joint_types[i] == "revolute",
                 tuple(self.axes[i].tolist()),
-                tuple(map(tuple, self.placement_rotation[i].tolist())),
+                _literals(self.placement_rotation[i]),
                 tuple(self.placement_position[i].tolist()),
                 float(self.mass[i]),
                 tuple(self.com[i].tolist()),
@@ -92,7 +93,12 @@ class Mechanism:
     @cached_property
     def tool(self) -> tuple[tuple[tuple[float, ...], ...], tuple[float, ...]]:
         """Tool rotation and position as plain Python numbers."""
-        return tuple(map(tuple, self.tool_rotation.tolist())), tuple(self.tool_position.tolist())
+        return _literals(self.tool_rotation), tuple(self.tool_position.tolist())
+
+
+def _literals(rotation: Array) -> tuple[tuple[float, ...], ...]:
+    """A rotation's entries; the 2e-16 of a right angle that a file gives in 16 digits is the zero that folds away."""
+    return tuple(map(tuple, np.where(np.abs(rotation) <= ROUNDING, 0.0, rotation).tolist()))
 
 
 class Body(NamedTuple):

@@ -97,7 +97,7 @@ class _Printer(Emitter):
         raise NotImplementedError(operation)
 
     def _inverse(self, x: str) -> str:
-        """1/x, once a value: a division costs as much as twenty multiplications, and pivots and lengths divide often."""
+        """1/x, once a value: pivots and lengths divide many times, and nothing is dearer than a division."""
         if x not in self._inverses:
             self._inverses[x] = self.div(self.constant(1.0), x)
         return self._inverses[x]
