@@ -85,7 +85,7 @@ def joint_place(
     vary: Mapping[str, Range],
 ) -> Place:
     """A grid over arm joints, the elbow and the one before if none are named; the others stand at `hold`, n values."""
-    names, units, varied, held, window = _joint_box(plant, bounds, joints, hold)
+    names, units, varied, held, window = joint_box(plant, bounds, joints, hold)
     parameters, axes = _axes(names, units, window, _counts(shape, len(varied)), plant, vary)
     return Place(Grid(axes, parameters), varied, held)
 
@@ -102,7 +102,7 @@ def sample_place(
 ) -> Place:
     """Samples of a box of arm joints, all of them if none are named, and of the parameters' ranges."""
     everything = tuple(joints) or plant.arm.mechanism.joint_names[plant.arm.m :]
-    names, units, varied, held, window = _joint_box(plant, bounds, everything, hold)
+    names, units, varied, held, window = joint_box(plant, bounds, everything, hold)
     if shape is not None and len(shape) != 1:
         raise InputError(f"shape: {tuple(shape)} given, but samples have one count. Give a single number.")
     known = _known_parameters(plant, vary)
@@ -120,9 +120,10 @@ def sample_place(
     return Place(domain, varied, held)
 
 
-def _joint_box(
+def joint_box(
     plant: Plant, bounds: Sequence[float] | None, joints: Sequence[str], hold: Sequence[float]
 ) -> tuple[list[str], list[str], tuple[int, ...], tuple[float, ...], list[float]]:
+    """Names, units and places of the joints that vary, all n held values, and low, high of each; checked."""
     arm = plant.arm
     names = arm.mechanism.joint_names[arm.m :]
     if arm.n < 2 and not joints:
