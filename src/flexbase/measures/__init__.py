@@ -1,6 +1,7 @@
 """Measures of a configuration, one file each; importing them fills the registry."""
 
 from flexbase.measures import (
+    algebraic_loop,
     alignment,
     compensability,
     exact_design,
@@ -8,6 +9,7 @@ from flexbase.measures import (
     loop,
     manipulability,
     robustness,
+    shortage,
     turn,
 )
 from flexbase.measures.registry import MEASURES, Configuration, Measure
@@ -16,6 +18,7 @@ __all__ = [
     "MEASURES",
     "Configuration",
     "Measure",
+    "algebraic_loop",
     "alignment",
     "compensability",
     "exact_design",
@@ -23,5 +26,6 @@ __all__ = [
     "loop",
     "manipulability",
     "robustness",
+    "shortage",
     "turn",
 ]

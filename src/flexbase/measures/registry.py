@@ -58,6 +58,7 @@ class Measure(NamedTuple):
     """A registered measure.
 
     per_mode : whether it reads one `RealMode` and has a value for each, or reads a `Configuration`
+    reads_modes : whether it reads modes, one or all of them
     zero_is : what its zero means, or None where zero means nothing
     zero_line : another measure that changes its sign, near 0, where this one only touches zero
     needs : of m, n and k (base joints, arm joints, task rows), what is missing for this measure, or None
@@ -69,6 +70,7 @@ class Measure(NamedTuple):
     unit: str
     purpose: str
     per_mode: bool
+    reads_modes: bool
     zero_is: str | None
     zero_line: str | None
     needs: Needs
@@ -86,6 +88,7 @@ def measure(
     unit: str,
     purpose: str,
     per_mode: bool = False,
+    reads_modes: bool = False,
     zero_is: str | None = None,
     zero_line: str | None = None,
     needs: Needs = _nothing,
@@ -95,7 +98,9 @@ def measure(
     """Register a generic formula under a name."""
 
     def register(run: Callable[[Any], Scalar]) -> Callable[[Any], Scalar]:
-        MEASURES[name] = Measure(name, unit, purpose, per_mode, zero_is, zero_line, needs, slow, feasible, run)
+        MEASURES[name] = Measure(
+            name, unit, purpose, per_mode, per_mode or reads_modes, zero_is, zero_line, needs, slow, feasible, run
+        )
         return run
 
     return register

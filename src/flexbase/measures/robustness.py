@@ -28,6 +28,7 @@ def robustness(mode: RealMode) -> Scalar:
     "worst_robustness",
     unit="m/(N s^2)",
     purpose="the smallest w_i of all modes",
+    reads_modes=True,
     zero_is="all modes on their robust arm configuration",
     needs=lambda m, n, k: None if m else "a base joint",
 )

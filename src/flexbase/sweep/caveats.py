@@ -23,7 +23,7 @@ def check_measures(plant: Plant, chosen: Sequence[Measure], asker: str) -> None:
         warnings.warn(
             f"{asker}: {plant.name} has gravity; its sag and stiffness are left out.", FlexbaseWarning, stacklevel=3
         )
-    if any(one.per_mode for one in chosen) and not proportional(arm.base):
+    if any(one.reads_modes for one in chosen) and not proportional(arm.base):
         warnings.warn(
             f"{asker}: the damping of {plant.name} couples the modes; values are those of the undamped base.",
             FlexbaseWarning,

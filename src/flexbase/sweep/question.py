@@ -10,12 +10,12 @@ import numpy as np
 
 from flexbase.checks import Array
 from flexbase.dynamics.two_joint_arm import TwoJointArm, two_joint_angles
-from flexbase.measures import Configuration, Measure
+from flexbase.measures import Configuration, Measure, exact_design
 from flexbase.model.mounted import MountedArm
 from flexbase.plant import SINGULAR as SINGULAR_RATIO
 from flexbase.sweep.parameters import configuration_of
 from flexbase.sweep.status import INDEFINITE, INFEASIBLE, OK, SINGULAR, UNREACHABLE
-from flexbase.trace.algebra import Scalar, Vector, absolute, independence, ldl, select
+from flexbase.trace.algebra import Matrix, Scalar, Vector, absolute, independence, ldl, select
 
 STRETCHED = 1.0 + 1e-12  # cosine of the elbow, to rounding, at the edge of reach
 NAN = float("nan")
@@ -30,6 +30,7 @@ class Question:
     parameters : names of further inputs
     planar : coordinates are the tip's in the plane of this two-joint arm; None: they are the n arm joints
     side : the elbow's, +1 or -1, with `planar`
+    redesigned : instead of E, the exact design of each cell, made for the nominal plant and kept while parameters vary
     """
 
     arm: MountedArm
@@ -40,6 +41,7 @@ class Question:
     E: Array | None = None
     planar: TwoJointArm | None = None
     side: float = 1.0
+    redesigned: bool = False
 
     @property
     def inputs(self) -> int:
@@ -63,6 +65,8 @@ class Question:
         status: Scalar = float(OK)
         for pivot in pivots:
             status = select(pivot > 0.0, status, float(INDEFINITE))
+        if self.redesigned:
+            status = select(exact_design.feasible(self._nominal(joints)), status, float(INFEASIBLE))
         ratio = independence(tuple(row[self.arm.m :] for row in configuration.J))
         status = select(ratio > SINGULAR_RATIO, status, float(SINGULAR))
         status = select(reached, status, float(UNREACHABLE))
@@ -83,7 +87,15 @@ class Question:
         """What measures read of a cell."""
         known = self._joints(inputs)[0] if joints is None else joints
         parameters = dict(zip(self.parameters, inputs[len(self.varied) :], strict=True))
-        return configuration_of(self.arm, known, parameters, None if self.E is None else self.E.tolist())
+        return configuration_of(self.arm, known, parameters, self._gain(known))
+
+    def _gain(self, joints: Vector) -> Matrix | None:
+        if self.redesigned:
+            return exact_design.exact_E(self._nominal(joints))
+        return None if self.E is None else self.E.tolist()
+
+    def _nominal(self, joints: Vector) -> Configuration:
+        return configuration_of(self.arm, joints, {}, None)
 
     def _joints(self, inputs: Vector) -> tuple[Vector, Scalar]:
         """Arm joints, and whether there are any."""
@@ -102,7 +114,8 @@ class Question:
         names = ",".join(one.name for one in self.measures)
         return (
             f"model {model_digest(self.arm)}\nmeasures {names}\nvaried {self.varied}\nheld {self.held!r}\n"
-            f"parameters {self.parameters}\nE {E}\nplanar {self.planar is not None} {self.side}"
+            f"parameters {self.parameters}\nE {E}\nplanar {self.planar is not None} {self.side}\n"
+            f"redesigned {self.redesigned}"
         )
 
 
