@@ -18,6 +18,7 @@ from flexbase.trace.tracer import trace
 
 Array = NDArray[np.float64]
 GRAIN = 4096  # configurations below which a second thread costs more than it saves
+SHARES = 8  # parts a thread, so that one that another program holds up does not keep the rest waiting
 
 
 class Kernel:
@@ -43,13 +44,19 @@ class Kernel:
             if cells:
                 result[:] = self(padded)[:, :cells]
             return result
-        parts = max(1, min(threads or cores(), cells // GRAIN))
+        workers = max(1, min(threads or cores(), cells // GRAIN))
+        if workers == 1:
+            self._run(x, result, 0, cells)
+            return result
+        parts = min(SHARES * workers, cells // GRAIN)
         edges = [cells * part // parts // LANES * LANES for part in range(parts)] + [cells]
-        spans = list(zip(edges[:-1], edges[1:], strict=True))
-        if parts == 1:
-            self._run(x, result, *spans[0])
-        else:
-            list(_pool().map(lambda span: self._run(x, result, *span), spans))
+        spans = iter(list(zip(edges[:-1], edges[1:], strict=True)))
+
+        def work(_: int) -> None:
+            for span in spans:  # whoever is free takes the next
+                self._run(x, result, *span)
+
+        list(_pool().map(work, range(workers)))
         return result
 
     def _run(self, x: Array, result: Array, begin: int, end: int) -> None:
