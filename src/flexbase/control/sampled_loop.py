@@ -1,0 +1,117 @@
+"""The loop as it runs: sampled plant and controller closed, at one rate or with a slower task sensor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexbase.checks import Array
+from flexbase.control.sampled_controller import SampledController
+from flexbase.control.sampled_plant import sampled_plant
+from flexbase.linear.discrete import Discrete, delay, feedback, series, side_by_side, spectral_radius, static
+from flexbase.plant import Pose
+
+
+@dataclass(frozen=True, eq=False)
+class SampledLoop:
+    """A closed loop over one period of its slowest sensor.
+
+    transition : state to state over the period, shape (states, states)
+    samples : of the controller, in a period
+    """
+
+    transition: Array
+    samples: int
+
+    @property
+    def radius(self) -> float:
+        """Spectral radius of a sample: below 1, the loop settles."""
+        return float(spectral_radius(self.transition) ** (1.0 / self.samples))
+
+
+def close_loop(pose: Pose, controller: SampledController) -> SampledLoop:
+    """The controller on the plant of a pose, which need not be the one that it was made for."""
+    sensing = controller.sensing
+    plant = sampled_plant(pose, sensing)
+    n, k = pose.arm.n, pose.arm.k
+    seen = plant.select(list(range(k + 2 * n)))
+    if sensing.task_every == 1:
+        return SampledLoop(feedback(seen, controller.system, external=k).A, 1)
+    fresh, held = _held(seen, k), _held(seen, k, hold=True)
+    first = feedback(fresh, controller.system, external=k).A
+    then = feedback(held, controller.system, external=k).A
+    return SampledLoop(np.linalg.matrix_power(then, sensing.task_every - 1) @ first, sensing.task_every)
+
+
+def _held(plant: Discrete, k: int, hold: bool = False) -> Discrete:
+    """The plant with a memory of the last tip error delivered; with `hold` it is what the controller gets."""
+    states, outputs = plant.order, len(plant.C)
+    A = np.zeros((states + k, states + k))
+    A[:states, :states] = plant.A
+    B = np.vstack([plant.B, np.zeros((k, plant.B.shape[1]))])
+    C = np.hstack([plant.C, np.zeros((outputs, k))])
+    D = plant.D.copy()
+    if hold:
+        A[states:, states:] = np.eye(k)
+        C[:k] = np.hstack([np.zeros((k, states)), np.eye(k)])
+        D[:k] = 0.0
+    else:
+        A[states:, :states] = plant.C[:k]
+        B[states:] = plant.D[:k]
+    return Discrete(A, B, C, D, plant.step)
+
+
+def sensitivities(pose: Pose, controller: SampledController) -> tuple[Discrete, Discrete]:
+    """S = (I + L)^-1 at the torque commands, and at the sensors that the controller uses.
+
+    With a slower task sensor its hold is replaced by the delay that it costs on average, (task_every - 1)/2 samples,
+    rounded up.
+    """
+    sensing = controller.sensing
+    n, k = pose.arm.n, pose.arm.k
+    plant = sampled_plant(pose, sensing).select(list(range(k + 2 * n)), list(range(n)))
+    used = [i for i in range(k + 2 * n) if _uses(controller.system, i)]
+    plant, system = plant.select(used), controller.system.select(inputs=used)
+    if sensing.task_every > 1:
+        plant = _later(plant, [i for i, channel in enumerate(used) if channel < k], sensing.task_every // 2)
+    return _sensitivity(plant, system), _sensitivity(system, plant)
+
+
+def _sensitivity(plant: Discrete, controller: Discrete) -> Discrete:
+    """From d to u in u = K P u + d: the sensitivity where d enters the plant."""
+    loop = feedback(plant, controller)
+    seen = np.hstack([controller.D @ loop.C[:, : plant.order], controller.D @ loop.C[:, plant.order :] + controller.C])
+    return Discrete(loop.A, loop.B, seen, np.eye(plant.B.shape[1]) + controller.D @ loop.D, plant.step)
+
+
+def loop_gain(pose: Pose, controller: SampledController) -> Discrete:
+    """What a torque command becomes once around the loop, n x n: the loop is u = L u."""
+    plant = sampled_plant(pose, controller.sensing)
+    n, k = pose.arm.n, pose.arm.k
+    plant = plant.select(list(range(k + 2 * n)), list(range(n)))
+    if controller.sensing.task_every > 1:
+        plant = _later(plant, list(range(k)), controller.sensing.task_every // 2)
+    return series(plant, controller.system)
+
+
+def tip_stiffness(pose: Pose, controller: SampledController) -> float:
+    """Smallest static stiffness of the tip, the loop closed [N/m or N m/rad]. Assumes a stable loop."""
+    n, k = pose.arm.n, pose.arm.k
+    plant = sampled_plant(pose, controller.sensing)
+    reordered = plant.select(list(range(k + 2 * n)))
+    loop = feedback(reordered, controller.system, external=k)
+    true = np.hstack([plant.C[k + 2 * n :], np.zeros((k, loop.order - plant.order))])
+    moved = np.linalg.solve(np.eye(loop.order) - loop.A, loop.B[:, n:])
+    return float(1.0 / np.linalg.norm(true @ moved, 2))
+
+
+def _uses(system: Discrete, channel: int) -> bool:
+    return bool(np.any(system.B[:, channel]) or np.any(system.D[:, channel]))
+
+
+def _later(plant: Discrete, channels: list[int], samples: int) -> Discrete:
+    late = [
+        delay(1, samples, plant.step) if i in channels else static(np.eye(1), plant.step) for i in range(len(plant.C))
+    ]
+    return series(plant, side_by_side(*late))

@@ -1,0 +1,34 @@
+"""The paper's own law, sampled: task PD, without or with a compensator on measured accelerations."""
+
+from __future__ import annotations
+
+from flexbase.control.sampled_controller import SampledController, pd_with_gain
+from flexbase.design.exact import exact
+from flexbase.design.hardware.registry import hardware_method
+from flexbase.design.recursive import recursive
+from flexbase.linear.modal import modes
+from flexbase.model.sensing import Sensing
+from flexbase.model.task import Gains
+from flexbase.plant import Pose
+
+FASTER = 100.0  # rad/s above the present frequency: the target of the paper's Fig. 10
+
+
+@hardware_method("none", "task PD alone")
+def none(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
+    """Task PD with the tip error differenced."""
+    return pd_with_gain(pose, sensing, gains, None, "none")
+
+
+@hardware_method("recursion", "the paper's 800 iterations on measured accelerations")
+def recursion(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
+    """Task PD with the recursion's E. Raises Infeasible where it does not converge."""
+    E = recursive(pose, natural_frequency=modes(pose)[0].frequency + FASTER, gains=gains).E
+    return pd_with_gain(pose, sensing, gains, E, "recursion")
+
+
+@hardware_method("exact", "the exact least gain on measured accelerations")
+def exact_gain(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
+    """Task PD with the exact E at a frequency 100 rad/s up. Raises Infeasible where there is none."""
+    E = exact(pose, natural_frequency=modes(pose)[0].frequency + FASTER, gains=gains).E
+    return pd_with_gain(pose, sensing, gains, E, "exact")

@@ -1,0 +1,128 @@
+"""Sampled linear systems: exact zero-order hold, delays, connection, response."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+
+from flexbase.checks import Array
+from flexbase.linear.second_order import StateSpace
+
+
+@dataclass(frozen=True, eq=False)
+class Discrete:
+    """x[k+1] = A x[k] + B u[k], y[k] = C x[k] + D u[k], every `step` seconds.
+
+    A : shape (states, states); B : (states, inputs); C : (outputs, states); D : (outputs, inputs)
+    """
+
+    A: Array
+    B: Array
+    C: Array
+    D: Array
+    step: float
+
+    @property
+    def order(self) -> int:
+        """Number of states."""
+        return len(self.A)
+
+    def transfer_function(self, frequencies: Array) -> np.ndarray:
+        """C (zI - A)^-1 B + D at z = exp(j omega step), shape (frequencies, outputs, inputs); omega in rad/s."""
+        z = np.exp(1j * np.asarray(frequencies) * self.step)[:, None, None]
+        if not self.order:
+            return np.broadcast_to(self.D.astype(complex), (len(z), *self.D.shape))
+        moved = np.linalg.solve(z * np.eye(self.order) - self.A, np.broadcast_to(self.B, (len(z), *self.B.shape)))
+        return self.C @ moved + self.D
+
+    def static_gain(self) -> Array:
+        """Response to a constant input, after all has settled, shape (outputs, inputs)."""
+        return np.asarray(self.C @ np.linalg.solve(np.eye(self.order) - self.A, self.B) + self.D)
+
+    def select(self, outputs: list[int] | None = None, inputs: list[int] | None = None) -> Discrete:
+        """The same system seen through some of its outputs and inputs."""
+        rows = list(range(len(self.C))) if outputs is None else outputs
+        columns = list(range(self.B.shape[1])) if inputs is None else inputs
+        return Discrete(self.A, self.B[:, columns], self.C[rows], self.D[np.ix_(rows, columns)], self.step)
+
+
+def hold(system: StateSpace, step: float) -> Discrete:
+    """What a zero-order hold makes of a continuous system, exactly."""
+    states, inputs = system.B.shape
+    block = np.zeros((states + inputs, states + inputs))
+    block[:states, :states], block[:states, states:] = system.A * step, system.B * step
+    grown = scipy.linalg.expm(block)
+    return Discrete(grown[:states, :states], grown[:states, states:], system.C, system.D, step)
+
+
+def static(D: Array, step: float) -> Discrete:
+    """A gain without memory."""
+    D = np.asarray(D, dtype=float)
+    return Discrete(np.zeros((0, 0)), np.zeros((0, D.shape[1])), np.zeros((D.shape[0], 0)), D, step)
+
+
+def delay(channels: int, samples: int, step: float) -> Discrete:
+    """Every channel `samples` steps late."""
+    if samples == 0:
+        return static(np.eye(channels), step)
+    size = channels * samples
+    A = np.eye(size, k=-channels)
+    B = np.eye(size, channels)
+    return Discrete(A, B, np.eye(size)[size - channels :], np.zeros((channels, channels)), step)
+
+
+def series(first: Discrete, then: Discrete) -> Discrete:
+    """`then` after `first`."""
+    return Discrete(
+        np.block([[first.A, np.zeros((first.order, then.order))], [then.B @ first.C, then.A]]),
+        np.vstack([first.B, then.B @ first.D]),
+        np.hstack([then.D @ first.C, then.C]),
+        then.D @ first.D,
+        first.step,
+    )
+
+
+def side_by_side(*systems: Discrete) -> Discrete:
+    """Systems with inputs and outputs of their own."""
+
+    def together(name: str) -> Array:
+        return np.asarray(scipy.linalg.block_diag(*(getattr(system, name) for system in systems)))
+
+    return Discrete(together("A"), together("B"), together("C"), together("D"), systems[0].step)
+
+
+def parallel(*systems: Discrete) -> Discrete:
+    """The sum of systems that share their inputs."""
+    both = side_by_side(*systems)
+    inputs, outputs = systems[0].D.shape[1], systems[0].D.shape[0]
+    spread = np.vstack([np.eye(inputs)] * len(systems))
+    gathered = np.hstack([np.eye(outputs)] * len(systems))
+    return Discrete(both.A, both.B @ spread, gathered @ both.C, gathered @ both.D @ spread, both.step)
+
+
+def feedback(plant: Discrete, controller: Discrete, external: int = 0) -> Discrete:
+    """The loop u = K y + d: from d, and the plant's last `external` inputs which the controller leaves alone, to y.
+
+    Raises numpy.linalg.LinAlgError where the algebraic loop D_K D_P has an eigenvalue 1.
+    """
+    driven = plant.B.shape[1] - external
+    Bu, Bw = plant.B[:, :driven], plant.B
+    Du, Dw = plant.D[:, :driven], plant.D
+    eye = np.eye(driven)
+    loop = np.linalg.inv(eye - controller.D @ Du)
+    # u = loop (D_K (C x + D_w w) + C_K x_K) + first part of w, where w = [d; external]
+    from_plant, from_controller = loop @ controller.D @ plant.C, loop @ controller.C
+    from_w = loop @ controller.D @ Dw
+    C = np.hstack([plant.C + Du @ from_plant, Du @ from_controller])
+    D = Dw + Du @ from_w
+    A = np.vstack([np.hstack([plant.A + Bu @ from_plant, Bu @ from_controller]), controller.B @ C])
+    A[plant.order :, plant.order :] += controller.A
+    B = np.vstack([Bw + Bu @ from_w, controller.B @ D])
+    return Discrete(A, B, C, D, plant.step)
+
+
+def spectral_radius(A: Array) -> float:
+    """Largest absolute value of the eigenvalues: below 1, all dies out."""
+    return float(np.abs(np.linalg.eigvals(A)).max(initial=0.0))
