@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flexbase.checks import Array
 from flexbase.linear.discrete import Discrete, delay, hold, series, side_by_side, static
 from flexbase.linear.second_order import StateSpace
 from flexbase.model.sensing import Sensing

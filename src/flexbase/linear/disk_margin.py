@@ -28,7 +28,7 @@ class DiskMargin(NamedTuple):
 def disk_margin(sensitivity: Discrete) -> DiskMargin:
     """alpha = 1 / max over omega of mu(S - I/2) for independent channels, from a stable S = (I + L)^-1.
 
-    mu is bounded from above by balancing the channels (exact up to three of them), so the margin is a promise. The
+    mu is bounded from above by balancing the channels, so the margin is a promise (a few percent short of mu's). The
     maximum is looked for on a grid and then refined; between grid points poles are not missed, since their frequencies
     are on it.
     """

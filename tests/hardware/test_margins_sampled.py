@@ -1,0 +1,123 @@
+"""Margins of the loop as it runs, each against the disturbed loop itself."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import flexbase as fb
+from flexbase.control.hardware import hardware_verdict
+from flexbase.control.sampled_controller import SampledController, pd_with_gain
+from flexbase.control.sampled_loop import close_loop, loop_gain, sensitivities, tip_stiffness
+from flexbase.control.sampled_plant import Changed, changed_pose, sampled_plant
+from flexbase.linear.discrete import Discrete, delay, series, static
+from flexbase.linear.disk_margin import disk_margin, structured_norm
+from flexbase.linear.loop_margins import delay_margin
+from flexbase.model.sensing import Sensing
+
+FAST = Sensing(rate=4000.0)
+
+
+@pytest.fixture(scope="module")
+def loop(paper_pose: fb.Pose) -> SampledController:
+    """The exact compensator at 4 kHz: stable, with little margin."""
+    E = fb.design(paper_pose, method="exact", natural_frequency=346.8).E
+    assert paper_pose.arm.gains is not None
+    return pd_with_gain(paper_pose, FAST, paper_pose.arm.gains, E, "exact")
+
+
+def radius_with(controller: SampledController, at_torque: Discrete) -> float:
+    changed = replace(controller, system=series(controller.system, at_torque))
+    return close_loop(controller.pose, changed).radius
+
+
+def test_rigid_arm_at_one_kilohertz(paper: fb.Plant) -> None:
+    """The paper's gains on a rigid base: spectral radius 1.166 with one sample of delay on both sides.  [theory §10]"""
+    stiff = replace(paper.arm, base=replace(paper.arm.base, stiffness=1e9 * paper.arm.base.stiffness))
+    pose = fb.Plant(stiff).at(paper.at_tip([0.33, -0.25]).q[1:])
+    assert paper.arm.gains is not None
+    controller = pd_with_gain(pose, Sensing(), paper.arm.gains, None, "none")
+    assert close_loop(pose, controller).radius == pytest.approx(1.166, abs=5e-4)
+
+
+def test_delay_margin_is_where_the_delayed_loop_turns(loop: SampledController) -> None:
+    """Stable with 0.99 of it, unstable with 1.01: the loop resampled so finely that the delay is whole samples."""
+    margin = delay_margin(loop_gain(loop.pose, loop))
+    samples = margin / FAST.step
+    assert 1.0 < samples < 4.0
+    for whole in range(5):
+        assert (radius_with(loop, delay(2, whole, FAST.step)) < 1.0) == (whole < samples)
+
+
+def test_disk_margin_is_a_promise_and_nearly_tight(loop: SampledController) -> None:
+    """Gains inside the disk never destabilise; at its border some pair of gains and phases puts a pole on the circle."""
+    alpha, omega = disk_margin(sensitivities(loop.pose, loop)[0])
+    low, high = (2.0 - alpha) / (2.0 + alpha), (2.0 + alpha) / (2.0 - alpha)
+    for gains in np.random.default_rng(0).uniform(low, high, (200, 2)):
+        assert radius_with(loop, static(np.diag(gains), FAST.step)) < 1.0
+    L = loop_gain(loop.pose, loop)
+    delta = np.linspace(-np.pi, np.pi, 181)
+    one, other = np.meshgrid(np.exp(1j * delta), np.exp(1j * delta))
+    Lw = L.transfer_function(np.array([omega]))[0]
+
+    def smallest_gap(size: float) -> float:
+        g = [(1.0 + size * z / 2.0) / (1.0 - size * z / 2.0) for z in (one, other)]
+        det = (1.0 - Lw[0, 0] * g[0]) * (1.0 - Lw[1, 1] * g[1]) - Lw[0, 1] * g[1] * Lw[1, 0] * g[0]
+        return float(np.abs(det).min())
+
+    assert smallest_gap(alpha) < 0.1 * smallest_gap(0.7 * alpha)
+
+
+def test_structured_norm_bounds() -> None:
+    """Between the spectral radius and the norm; nearly unchanged by a scaling of the channels; equal to it when diagonal."""
+    rng = np.random.default_rng(1)
+    T = rng.normal(size=(30, 3, 3)) + 1j * rng.normal(size=(30, 3, 3))
+    size = structured_norm(T)
+    assert np.all(size <= np.linalg.norm(T, 2, axis=(1, 2)) + 1e-12)
+    assert np.all(size >= np.abs(np.linalg.eigvals(T)).max(axis=1) - 1e-12)
+    scaling = np.diag([1.0, 1e3, 1e-2])
+    assert structured_norm(scaling @ T @ np.linalg.inv(scaling)) == pytest.approx(size, rel=5e-2)
+    diagonal = np.diag([1.0, -3.0, 2.0])[None].astype(complex)
+    assert structured_norm(diagonal) == pytest.approx([3.0])
+
+
+def test_tip_stiffness_is_what_a_push_shows(loop: SampledController) -> None:
+    """A constant force at the tip, the sampled loop run until it rests: displacement over force, to 1e-6."""
+    pose, n, k = loop.pose, 2, 2
+    plant, force = sampled_plant(pose, FAST), np.array([3.0, -1.0])
+    x, c, tau = np.zeros(plant.order), np.zeros(loop.system.order), np.zeros(n)
+    for _ in range(8000):
+        u = np.concatenate([tau, force])
+        y = plant.C @ x + plant.D @ u
+        seen = y[: k + 2 * n]
+        tau = loop.system.C @ c + loop.system.D @ seen
+        u = np.concatenate([tau, force])
+        c = loop.system.A @ c + loop.system.B @ seen
+        x = plant.A @ x + plant.B @ u
+    moved = (plant.C @ x + plant.D @ u)[k + 2 * n :]
+    assert np.linalg.norm(force) / np.linalg.norm(moved) >= tip_stiffness(pose, loop) * (1.0 - 1e-6)
+    assert tip_stiffness(pose, loop) == pytest.approx(1e5, rel=1e-6)  # Kp: the task error is what the law stiffens
+
+
+def test_changes_change_the_robot(paper_pose: fb.Pose) -> None:
+    softer = changed_pose(paper_pose, Changed("", base_stiffness=0.8))
+    assert fb.modes(softer)[0].frequency == pytest.approx(np.sqrt(0.8) * fb.modes(paper_pose)[0].frequency, rel=1e-12)
+    heavier = changed_pose(paper_pose, Changed("", last_link=1.1))
+    assert heavier.M[2, 2] == pytest.approx(1.1 * paper_pose.M[2, 2], rel=1e-12)
+    turned = changed_pose(paper_pose, Changed("", joints=((1, 0.1),)))
+    assert turned.q == pytest.approx(paper_pose.q + [0.0, 0.0, 0.1])
+
+
+def test_verdict(loop: SampledController, paper_pose: fb.Pose) -> None:
+    verdict = hardware_verdict(loop)
+    assert verdict.stable
+    assert verdict.algebraic_loop_radius == pytest.approx(0.72298, abs=1e-5)
+    assert verdict.algebraic_loop_radius_per_joint == pytest.approx(0.93188, abs=1e-5)
+    assert not verdict.has_margin
+    assert len(verdict.to_dict()) == 15
+    slow = replace(
+        loop, sensing=Sensing(), system=Discrete(loop.system.A, loop.system.B, loop.system.C, loop.system.D, 1e-3)
+    )
+    assert hardware_verdict(slow, changes=()).to_dict()["spectral_radius"] > 1.0
