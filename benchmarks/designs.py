@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 
 import numpy as np
-from timing import Ratio, compare
+from timing import Ratio, Side, race
 
 import flexbase as fb
 
@@ -43,9 +43,11 @@ def exact_vs_recursion() -> list[Ratio]:
     for answer in (exact(), recursion("estimated"), recursion("exact")):
         if not meets_targets(pose, answer.E):
             raise SystemExit(f"control failed: {answer.method} misses its targets")
+    fast = Side(exact, times=10)
     return [
-        compare("exact_vs_recursion", exact, "800 iterations, slopes estimated as in the paper",
-                lambda: recursion("estimated"), inner=10),
-        compare("exact_vs_recursion_exact_slopes", exact, "800 iterations, exact slopes",
-                lambda: recursion("exact"), inner=10),
-    ]  # fmt: skip
+        race(name, fast, f"800 iterations, {slopes}", Side(lambda kind=kind: recursion(kind)), rounds=7)
+        for name, slopes, kind in (
+            ("exact_vs_recursion", "slopes estimated as in the paper", "estimated"),
+            ("exact_vs_recursion_exact_slopes", "exact slopes", "exact"),
+        )
+    ]

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from timing import Ratio, compare
+from timing import Ratio, Side, race
 
 import flexbase as fb
 
 
-def rows_vs_poses() -> list[Ratio]:
+def map_rows_vs_poses() -> list[Ratio]:
     """A 40 x 40 robustness map against `modes` at each reachable cell."""
     plant = fb.load("ueda2003")
     chart = fb.sweep(plant, shape=(40, 40))
@@ -21,4 +21,5 @@ def rows_vs_poses() -> list[Ratio]:
     mapped = np.array([float(chart.robustness[i, j, 0]) for i, j in cells])
     if not np.allclose(poses(), mapped, rtol=1e-9, atol=1e-12) or np.allclose(np.zeros(len(cells)), mapped, atol=1e-12):
         raise SystemExit("control failed: the map and the poses disagree, or a map of zeros would pass")
-    return [compare("map_rows_vs_poses", lambda: fb.sweep(plant, shape=(40, 40)), "modes() pose by pose", poses, 3, 5)]
+    mapping = Side(lambda: fb.sweep(plant, shape=(40, 40)), times=5)
+    return [race("map_rows_vs_poses", mapping, "modes() pose by pose", Side(poses), rounds=7)]

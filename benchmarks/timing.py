@@ -18,20 +18,27 @@ class Ratio(NamedTuple):
     spread: tuple[float, float]
 
 
-def compare(
-    name: str, fast: Callable[[], object], against: str, slow: Callable[[], object], rounds: int = 7, inner: int = 1
-) -> Ratio:
-    """Time both in turn; `fast` runs `inner` times a round so that the clock resolves it."""
-    fast(), slow()
-    ratios = []
-    for _ in range(rounds):
-        slow_time = _seconds(slow)
-        fast_time = _seconds(lambda: [fast() for _ in range(inner)]) / inner
-        ratios.append(slow_time / fast_time)
+class Side(NamedTuple):
+    """One way: what to call, how often in a round so that the clock resolves it, and how much work a call does."""
+
+    call: Callable[[], object]
+    times: int = 1
+    work: float = 1.0
+
+    def seconds(self) -> float:
+        """Wall time of a unit of work."""
+        begin = time.perf_counter()
+        for _ in range(self.times):
+            self.call()
+        return (time.perf_counter() - begin) / (self.times * self.work)
+
+
+def race(name: str, fast: Side, against: str, slow: Side, rounds: int = 9) -> Ratio:
+    """Time both in turn, a round each; the ratio of every round's pair of times."""
+    fast.call(), slow.call()
+    return median(name, against, [slow.seconds() / fast.seconds() for _ in range(rounds)])
+
+
+def median(name: str, against: str, ratios: list[float]) -> Ratio:
+    """The median of the rounds, their least and their greatest."""
     return Ratio(name, float(np.median(ratios)), against, (min(ratios), max(ratios)))
-
-
-def _seconds(work: Callable[[], object]) -> float:
-    begin = time.perf_counter()
-    work()
-    return time.perf_counter() - begin
