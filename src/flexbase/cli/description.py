@@ -46,6 +46,8 @@ def _project(found: Description) -> list[tuple[str, object]]:
             (f"task stiffness [{units.common('stiffness', rows)}]", gains.stiffness),
             (f"task damping [{units.common('damping', rows)}]", gains.damping),
         ]
+    if arm.sensing is not None:
+        said += [("sensing", arm.sensing.summary())]
     return [*said, ("gravity", f"{listed(arm.gravity, 'xyz')} m/s^2" if arm.has_gravity else "none")]
 
 

@@ -84,18 +84,24 @@ def _differences(sensing: Sensing) -> Discrete:
 
 
 def _kalman(sensing: Sensing) -> Discrete:
-    """Steady-state filter of a joint whose acceleration is a random walk; its corner is the acceleration filter's."""
+    """Steady-state Kalman filter of a joint whose acceleration is a random walk.
+
+    In continuous time, with densities of process over measurement noise of corner^6, it is a Butterworth filter of
+    third order on the acceleration: -3 dB at the corner. Sampled, with jerk constant between samples, the same holds
+    for corners well below the rate; the noise of a sampled measurement is its density over the step. Time is counted in
+    samples, so that the Riccati equation is of order one.
+    """
     from scipy.linalg import solve_discrete_are
 
-    h, corner = sensing.step, 2.0 * np.pi * sensing.acceleration_filter
-    F = np.array([[1.0, h, h * h / 2.0], [0.0, 1.0, h], [0.0, 0.0, 1.0]])
-    G = np.array([[h**3 / 6.0], [h * h / 2.0], [h]])
+    h = sensing.step
+    F = np.array([[1.0, 1.0, 0.5], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]])
+    G = np.array([[1.0 / 6.0], [0.5], [1.0]])
     H = np.array([[1.0, 0.0, 0.0]])
-    noise = corner**6 * h  # continuous triple integrator: bandwidth^6 = process over measurement density
-    P = solve_discrete_are(F.T, H.T, G @ G.T * noise / h, np.array([[1.0]]) / h * h)
+    process = (2.0 * np.pi * sensing.acceleration_filter * h) ** 6
+    P = solve_discrete_are(F.T, H.T, process * G @ G.T, np.eye(1))
     gain = P @ H.T / (H @ P @ H.T + 1.0)
     A = (np.eye(3) - gain @ H) @ F
-    C = np.array([[0.0, 0.0, 1.0]])
+    C = np.array([[0.0, 0.0, 1.0]]) / h**2
     return Discrete(A, gain, C @ A, C @ gain, h)
 
 

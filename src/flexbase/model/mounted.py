@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from flexbase.checks import Array
 from flexbase.model.base import Base
 from flexbase.model.mechanism import Mechanism
+from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains, Task
 
 
@@ -16,6 +17,7 @@ class MountedArm:
 
     gravity : acceleration of free fall in world axes, shape (3,) [m/s^2]; zero is the paper's case
     gains : default task gains, or None
+    sensing : how the loop really runs, or None where the project does not say
     """
 
     name: str
@@ -24,6 +26,7 @@ class MountedArm:
     task: Task
     gravity: Array
     gains: Gains | None = None
+    sensing: Sensing | None = None
 
     @property
     def m(self) -> int:

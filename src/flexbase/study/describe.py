@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -46,7 +46,7 @@ class Description:
         return None if self.pose is None else np.asarray(self.pose.q[: self.plant.arm.m] - self.pose.equilibrium)
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain numbers in SI units; "pose", "gains" are None where there are none."""
+        """Plain numbers in SI units; "pose", "gains", "sensing" are None where there are none."""
         arm = self.plant.arm
         gains = arm.gains
         return {
@@ -63,6 +63,7 @@ class Description:
             },
             "gravity": arm.gravity.tolist(),
             "gains": gains and {"stiffness": gains.stiffness.tolist(), "damping": gains.damping.tolist()},
+            "sensing": arm.sensing and asdict(arm.sensing),
             "pose": self._pose_to_dict(),
         }
 
@@ -89,6 +90,7 @@ class Description:
             *(f"  base {name}: {value}" for name, value in facts["base"].items()),
             f"  gravity: {facts['gravity']} m/s^2",
             f"  gains: {facts['gains'] or 'none'}",
+            f"  sensing: {self.plant.arm.sensing.summary() if self.plant.arm.sensing else 'not declared'}",
         ]
         return "\n".join([*lines, *(f"  {name}: {value}" for name, value in (facts["pose"] or {}).items())])
 

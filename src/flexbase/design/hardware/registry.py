@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from flexbase.checks import choose
 from flexbase.control.sampled_controller import SampledController
 from flexbase.errors import InputError
-from flexbase.model.sensing import TYPICAL, Sensing
+from flexbase.model.sensing import TYPICAL, Sensing, checked_sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
 
@@ -41,11 +41,13 @@ def controller_for(
 ) -> SampledController:
     """A sampled controller at a pose by one of the methods.
 
-    sensing : how the loop runs; 1 kHz with one sample of delay if left out. gains : the project's own if left out
+    sensing : how the loop runs; if left out, as the project declares it, else 1 kHz with one sample of delay
+    gains : the project's own if left out
     Raises InputError, Infeasible.
     """
     chosen = choose("method", method, HARDWARE_METHODS)
     used = pose.arm.gains if gains is None else gains
     if used is None:
         raise InputError(f"{pose.plant.name}: no task gains. Add a [control] table to the project, or give gains.")
-    return chosen.make(pose, TYPICAL if sensing is None else sensing, used, **options)
+    declared = (pose.arm.sensing or TYPICAL) if sensing is None else sensing
+    return chosen.make(pose, checked_sensing(declared, pose.arm.n), used, **options)

@@ -15,6 +15,7 @@ from flexbase.model.files.base_table import InertiaAt, base_of
 from flexbase.model.files.messages import first_fault
 from flexbase.model.files.robot_table import mechanism_of
 from flexbase.model.files.schema import BaseTable, ProjectFile, RobotTable, TaskTable
+from flexbase.model.files.sensing_table import sensing_of
 from flexbase.model.mounted import MountedArm
 from flexbase.model.task import ROWS, Gains, Task, make_gains
 
@@ -104,7 +105,8 @@ def _build(project: ProjectFile, source: str, inertia_at: InertiaAt | None, fold
         warnings.warn(f"{source}: no [base] joints: a rigid base, without modes.", FlexbaseWarning, stacklevel=2)
     task = _task(project, mechanism.N - base.m, source)
     gravity = check_length(f"{source}, gravity", project.gravity, 3, "x y z")
-    return MountedArm(project.name, mechanism, base, task, gravity, _gains(project, task, source))
+    sensing = sensing_of(project.sensing, mechanism.N - base.m, source)
+    return MountedArm(project.name, mechanism, base, task, gravity, _gains(project, task, source), sensing)
 
 
 def _bare(path: Path) -> MountedArm:

@@ -6,6 +6,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 
+from flexbase.model.sensing import FASTEST, MOST_DELAY, MOST_EVERY, Sensing
+
 LARGEST = 1e12  # of any number of a project, in SI units
 
 
@@ -147,6 +149,32 @@ class ControlTable(Table):
     damping: NumbersOrRows = Field(description="one for each task row [N s/m or N m s/rad], or a matrix")
 
 
+class SensingTable(Table):
+    """How the loop really runs: clock, delays, sensors and limits of the sampled controller."""
+
+    rate: float = Field(Sensing.rate, gt=0, le=FASTEST, description="of controller, encoders and torque commands [Hz]")
+    task_every: int | None = Field(
+        None, ge=1, le=MOST_EVERY, description="the task sensor delivers once in so many samples; 1 if left out"
+    )
+    task_rate: float | None = Field(None, gt=0, le=FASTEST, description="instead of task_every [Hz]; it divides rate")
+    compute_delay: int = Field(1, ge=0, le=MOST_DELAY, description="samples from a measurement to its torque")
+    task_delay: int = Field(1, ge=0, le=MOST_DELAY, description="samples by which the task sensor is late, beside that")
+    encoder_counts: float | None = Field(
+        None, gt=0, le=LARGEST, description="a turn, or a metre of a sliding joint; not quantised if left out"
+    )
+    acceleration: Literal["accelerometer", "encoders", "kalman"] = Field(
+        "accelerometer", description="of the arm joints: measured, differenced and filtered, or estimated"
+    )
+    accelerometer_lag: float = Field(Sensing.accelerometer_lag, ge=0, le=1e6, description="first-order lag [s]")
+    acceleration_filter: float = Field(
+        Sensing.acceleration_filter, gt=0, le=FASTEST, description="corner of the encoders' or the Kalman filter [Hz]"
+    )
+    acceleration_noise: float = Field(0.0, ge=0, le=1e6, description="standard deviation [rad/s^2 or m/s^2]")
+    task_noise: float = Field(0.0, ge=0, le=1e6, description="standard deviation [m or rad]")
+    torque_limit: Numbers | None = Field(None, description="one for each arm joint [N m or N]; none if left out")
+    torque_slew: Numbers | None = Field(None, description="one for each arm joint [N m/s or N/s]; none if left out")
+
+
 class ProjectFile(Table):
     """A flexbase project: an arm on a compliant base, its task and its default gains. SI units."""
 
@@ -157,3 +185,4 @@ class ProjectFile(Table):
     base: BaseTable | None = Field(None, description="left out: a rigid base")
     task: TaskTable
     control: ControlTable | None = None
+    sensing: SensingTable | None = Field(None, description="left out: verdicts on hardware assume 1 kHz")
