@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -11,6 +10,7 @@ import numpy as np
 from flexbase.checks import Array
 from flexbase.dynamics.two_joint_arm import TwoJointArm, two_joint_angles
 from flexbase.measures import Configuration, Measure, exact_design
+from flexbase.model.digest import model_digest as model_digest  # also for those who ask here
 from flexbase.model.mounted import MountedArm
 from flexbase.plant import SINGULAR as SINGULAR_RATIO
 from flexbase.sweep.parameters import configuration_of
@@ -117,16 +117,3 @@ class Question:
             f"parameters {self.parameters}\nE {E}\nplanar {self.planar is not None} {self.side}\n"
             f"redesigned {self.redesigned}"
         )
-
-
-def model_digest(arm: MountedArm) -> str:
-    """A fingerprint of every number of an arm on its base that a sweep reads."""
-    digest = hashlib.sha256()
-    mechanism = arm.mechanism
-    digest.update(repr((mechanism.joint_names, mechanism.joint_types, arm.task)).encode())
-    arrays = [value for value in vars(mechanism).values() if isinstance(value, np.ndarray)]
-    arrays += [arm.base.stiffness, arm.base.damping, arm.base.equilibrium]
-    arrays += [] if arm.gains is None else [arm.gains.stiffness, arm.gains.damping]
-    for array in arrays:
-        digest.update(repr(array.shape).encode() + np.ascontiguousarray(array, dtype=float).tobytes())
-    return digest.hexdigest()

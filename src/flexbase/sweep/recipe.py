@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from flexbase.checks import Array
+from flexbase.model.digest import model_digest
 from flexbase.sweep.domain import Domain, Samples
 from flexbase.sweep.grids import Place
-from flexbase.sweep.question import Question, model_digest
+from flexbase.sweep.question import Question
 
 VERSIONED = ("flexbase", "numpy")
 
