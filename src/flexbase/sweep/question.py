@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-
 from flexbase.checks import Array
 from flexbase.dynamics.two_joint_arm import TwoJointArm, two_joint_angles
 from flexbase.measures import Configuration, Measure, exact_design
