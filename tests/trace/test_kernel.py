@@ -86,6 +86,26 @@ def test_derivatives_are_exact() -> None:
         assert found[2 + i :: 3] == pytest.approx(slopes, rel=1e-14, abs=1e-14)
 
 
+@pytest.mark.parametrize("cells", [1, 8, 21, 1000])
+def test_iterated_kernels_feed_their_results_back(cells: int) -> None:
+    """Newton's square root of an input that stays, three and thirty steps of it, against the same steps on rows."""
+
+    def newton(v: Vector) -> list[Scalar]:
+        root, _, square = v
+        return [0.5 * (root + square / root), v[0]]
+
+    kernel = kernel_of(newton, 3, "newton", iterate=True)
+    square = np.random.default_rng(7).uniform(0.5, 2.0, cells)
+    x = np.array([np.ones(cells), np.zeros(cells), square])
+    root, before = x[:2]
+    for _ in range(3):
+        root, before = newton((root, before, square))
+    assert kernel(x, steps=3) == pytest.approx(np.array([root, before]), rel=1e-15)
+    assert kernel(x, steps=3) != pytest.approx(kernel(x, steps=2), rel=1e-9)
+    assert kernel(x, steps=30)[0] == pytest.approx(np.sqrt(square), rel=1e-15)
+    assert np.array_equal(kernel(x, steps=3, threads=1), kernel(x, steps=3))
+
+
 def test_common_work_is_done_once() -> None:
     """The same subexpression twice costs one operation more, not twice as many."""
 

@@ -28,10 +28,11 @@ class Kernel:
         self.inputs, self.outputs = inputs, outputs
         self._code = MachineCode(code)
 
-    def __call__(self, x: Array, out: Array | None = None, threads: int | None = None) -> Array:
+    def __call__(self, x: Array, out: Array | None = None, threads: int | None = None, steps: int = 1) -> Array:
         """Results of every configuration, shape (outputs, cells), of inputs of shape (inputs, cells).
 
         out : where to put them, rows contiguous; threads : all cores if left out
+        steps : how often a kernel made with `iterate` runs on its own results, at least once
         """
         x = np.asarray(x, dtype=float)
         if x.shape[1:] != (1,) and (x.strides[1:] != (8,) or x.strides[0] % 8):
@@ -42,24 +43,25 @@ class Kernel:
             padded = np.repeat(x[:, :1], LANES, axis=1) if cells else np.zeros((self.inputs, 0))
             padded[:, :cells] = x
             if cells:
-                result[:] = self(padded)[:, :cells]
+                result[:] = self(padded, steps=steps)[:, :cells]
             return result
-        workers = max(1, min(threads or cores(), cells // GRAIN))
+        grain = max(LANES, GRAIN // steps)
+        workers = max(1, min(threads or cores(), cells // grain))
         if workers == 1:
-            self._run(x, result, 0, cells)
+            self._run(x, result, 0, cells, steps)
             return result
-        parts = min(SHARES * workers, cells // GRAIN)
+        parts = min(SHARES * workers, cells // grain)
         edges = [cells * part // parts // LANES * LANES for part in range(parts)] + [cells]
         spans = iter(list(zip(edges[:-1], edges[1:], strict=True)))
 
         def work(_: int) -> None:
             for span in spans:  # whoever is free takes the next
-                self._run(x, result, *span)
+                self._run(x, result, *span, steps)
 
         list(_pool().map(work, range(workers)))
         return result
 
-    def _run(self, x: Array, result: Array, begin: int, end: int) -> None:
+    def _run(self, x: Array, result: Array, begin: int, end: int, steps: int) -> None:
         """Whole blocks of lanes first; the rest by a last block that overlaps them, which gives the same bits."""
         whole = (end - begin) // LANES * LANES
         starts = [(begin, whole)] if begin + whole == end else [(begin, whole), (end - LANES, LANES)]
@@ -70,23 +72,31 @@ class Kernel:
                 x.strides[0] // 8,
                 result.strides[0] // 8,
                 count,
+                steps,
             )
 
 
 def kernel_of(
-    function: Callable[[Vector], Sequence[Scalar]], inputs: int, recipe: str, *, derivative: bool = False
+    function: Callable[[Vector], Sequence[Scalar]],
+    inputs: int,
+    recipe: str,
+    *,
+    derivative: bool = False,
+    iterate: bool = False,
 ) -> Kernel:
     """The kernel of a generic function, from the cache on disk or traced and compiled now.
 
     recipe : everything that the function's results depend on, in words and numbers; two functions of one recipe are
         taken to be the same. flexbase's own code, the compiler and the processor are added here.
+    derivative : append the exact derivatives of every value by every input, value by value
+    iterate : the outputs are the first inputs a step later, as of a recursion or an integrator
     Raises MissingExtra without CasADi or llvmlite.
     """
-    key = "\n".join([store.source_digest(), processor(), str(inputs), str(derivative), recipe])
+    key = "\n".join([store.source_digest(), processor(), str(inputs), str(derivative), str(iterate), recipe])
     kept = store.read(key)
     if kept is None:
         program = trace(function, inputs, derivative=derivative)
-        kept = program.outputs.to_bytes(8, "little") + compile_program(program)
+        kept = program.outputs.to_bytes(8, "little") + compile_program(program, iterate)
         store.write(key, kept)
     return Kernel(kept[8:], inputs, int.from_bytes(kept[:8], "little"))
 

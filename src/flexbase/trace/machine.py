@@ -10,7 +10,7 @@ from flexbase.errors import import_extra
 from flexbase.trace.targets.llvm import ENTRY, print_llvm
 from flexbase.trace.tracer import Program
 
-Entry = Any  # a C function: (x, y, x_stride, y_stride, cells)
+Entry = Any  # a C function: (x, y, x_stride, y_stride, cells, steps)
 
 
 def processor() -> str:
@@ -21,10 +21,10 @@ def processor() -> str:
     return f"llvm {version} {llvm.get_process_triple()} {llvm.get_host_cpu_name()} {features}"
 
 
-def compile_program(program: Program) -> bytes:
-    """An object file. Raises MissingExtra without llvmlite."""
+def compile_program(program: Program, iterate: bool = False) -> bytes:
+    """An object file; `iterate` as in `print_llvm`. Raises MissingExtra without llvmlite."""
     llvm = import_extra("llvmlite.binding", "fast")
-    module = llvm.parse_assembly(print_llvm(program))
+    module = llvm.parse_assembly(print_llvm(program, iterate))
     module.verify()
     return bytes(_target().emit_object(module))
 
@@ -37,7 +37,7 @@ class MachineCode:
         self._engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _target())
         self._engine.add_object_file(llvm.ObjectFileRef.from_data(code))
         self._engine.finalize_object()
-        signature = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 2, *[ctypes.c_int64] * 3)
+        signature = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 2, *[ctypes.c_int64] * 4)
         self.entry: Entry = signature(self._engine.get_function_address(ENTRY))
 
 

@@ -10,14 +10,16 @@ LANES = 8  # one AVX-512 register; narrower machines split it
 class Emitter:
     """Collects instructions; every method appends one and returns the name of its result.
 
+    prefix : of the names that it gives
     Multiplications and additions may be contracted to one fused operation; nothing else is left to the compiler.
     """
 
     vector = f"<{LANES} x double>"
     mask = f"<{LANES} x i1>"
 
-    def __init__(self) -> None:
+    def __init__(self, prefix: str = "v") -> None:
         self.lines: list[str] = []
+        self._prefix = prefix
 
     def line(self, text: str) -> None:
         """An instruction without a result."""
@@ -25,7 +27,7 @@ class Emitter:
 
     def emit(self, text: str) -> str:
         """An instruction and the name of its result."""
-        name = f"%v{len(self.lines)}"
+        name = f"%{self._prefix}{len(self.lines)}"
         self.lines.append(f"  {name} = {text}")
         return name
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from flexbase.trace.targets.circular import arc_tangent, sine_and_cosine
 from flexbase.trace.targets.emitter import LANES, Emitter, declarations
 from flexbase.trace.tracer import Instruction, Program
@@ -10,24 +12,25 @@ ENTRY = "evaluate"
 RELATIONS = {"LT": "olt", "LE": "ole", "EQ": "oeq", "NE": "une"}
 
 
-def print_llvm(program: Program) -> str:
-    """IR of void evaluate(const double *x, double *y, int64 x_stride, int64 y_stride, int64 cells).
+def print_llvm(program: Program, iterate: bool = False) -> str:
+    """IR of void evaluate(const double *x, double *y, int64 x_stride, int64 y_stride, int64 cells, int64 steps).
 
     Input i of configuration c is x[i * x_stride + c], output likewise; cells is a positive multiple of LANES.
+
+    iterate : run `steps` (at least 1) times before anything is stored, the outputs of one time being the first inputs
+        of the next; further inputs stay as they are. Else `steps` is not looked at
     """
-    body = _Printer()
-    for instruction in program.instructions:
-        body.step(instruction)
+    body = _repeated(program) if iterate else _once(program)
     return "\n".join(
         [
             *declarations(),
-            f"define void @{ENTRY}(ptr noalias readonly %x, ptr noalias %y, i64 %x_stride, i64 %y_stride, i64 %cells)"
-            ' "prefer-vector-width"="512" {',
+            f"define void @{ENTRY}(ptr noalias readonly %x, ptr noalias %y, i64 %x_stride, i64 %y_stride, i64 %cells, "
+            'i64 %steps) "prefer-vector-width"="512" {',
             "entry:",
             "  br label %block",
             "block:",
-            "  %cell = phi i64 [0, %entry], [%next, %block]",
-            *body.lines,
+            f"  %cell = phi i64 [0, %entry], [%next, %{'after' if iterate else 'block'}]",
+            *body,
             f"  %next = add i64 %cell, {LANES}",
             "  %more = icmp slt i64 %next, %cells",
             "  br i1 %more, label %block, label %done",
@@ -38,11 +41,47 @@ def print_llvm(program: Program) -> str:
     )
 
 
-class _Printer(Emitter):
-    """Keeps what each slot holds: a name of a value or a constant, and which of them are comparisons."""
+def _once(program: Program) -> list[str]:
+    body = _Printer()
+    for instruction in program.instructions:
+        body.step(instruction)
+    return body.lines
 
-    def __init__(self) -> None:
+
+def _repeated(program: Program) -> list[str]:
+    """A loop over the steps: inputs are read before the first, the state stays in registers and is written at last."""
+    before, after, state = Emitter("first"), Emitter("last"), range(program.outputs)
+    read = [_load(before, i) for i in range(program.inputs)]
+    body = _Printer([f"%state{i}" for i in state] + read[program.outputs :])
+    for instruction in program.instructions:
+        body.step(instruction)
+    for i in state:
+        _store(after, i, body.results[i])
+    return [
+        *before.lines,
+        "  br label %step",
+        "step:",
+        "  %count = phi i64 [0, %block], [%counted, %step]",
+        *(f"  %state{i} = phi {Emitter.vector} [{read[i]}, %block], [{body.results[i]}, %step]" for i in state),
+        *body.lines,
+        "  %counted = add i64 %count, 1",
+        "  %again = icmp slt i64 %counted, %steps",
+        "  br i1 %again, label %step, label %after",
+        "after:",
+        *after.lines,
+    ]
+
+
+class _Printer(Emitter):
+    """Keeps what each slot holds: a name of a value or a constant, and which of them are comparisons.
+
+    inputs : names of the inputs where they are in registers already; outputs then stay there too, in `results`
+    """
+
+    def __init__(self, inputs: Sequence[str] | None = None) -> None:
         super().__init__()
+        self._inputs = inputs
+        self.results: dict[int, str] = {}
         self._slots: dict[int, str] = {}
         self._masks: dict[str, str] = {}
         self._turned: dict[str, tuple[str, str]] = {}
@@ -52,9 +91,11 @@ class _Printer(Emitter):
         operands = [self._slots[slot] for slot in i.arguments]
         if i.operation == "OUTPUT":
             value = self._number(operands[0])
-            self.line(f"store {self.vector} {value}, ptr {self._place('y', i.number)}, align 8")
+            if self._inputs is None:
+                _store(self, i.number, value)
+            self.results[i.number] = value
         elif i.operation == "INPUT":
-            self._slots[i.result] = self.emit(f"load {self.vector}, ptr {self._place('x', i.number)}, align 8")
+            self._slots[i.result] = _load(self, i.number) if self._inputs is None else self._inputs[i.number]
         elif i.operation == "CONST":
             self._slots[i.result] = self.constant(i.value)
         elif i.operation == "IF_ELSE_ZERO":
@@ -124,7 +165,18 @@ class _Printer(Emitter):
         """A slot as a mask: nonzero counts as true."""
         return name if name in self._masks else self.compare("une", name, self.constant(0.0))
 
-    def _place(self, array: str, number: int) -> str:
-        row = self.emit(f"mul i64 %{array}_stride, {number}")
-        start = self.emit(f"add i64 {row}, %cell")
-        return self.emit(f"getelementptr double, ptr %{array}, i64 {start}")
+
+def _load(e: Emitter, number: int) -> str:
+    """Input `number` of the lanes' configurations."""
+    return e.emit(f"load {e.vector}, ptr {_place(e, 'x', number)}, align 8")
+
+
+def _store(e: Emitter, number: int, value: str) -> None:
+    """A value as output `number` of the lanes' configurations."""
+    e.line(f"store {e.vector} {value}, ptr {_place(e, 'y', number)}, align 8")
+
+
+def _place(e: Emitter, array: str, number: int) -> str:
+    row = e.emit(f"mul i64 %{array}_stride, {number}")
+    start = e.emit(f"add i64 {row}, %cell")
+    return e.emit(f"getelementptr double, ptr %{array}, i64 {start}")
