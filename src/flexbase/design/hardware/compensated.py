@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
+from flexbase.checks import Array
 from flexbase.control.sampled_controller import SampledController, pd_with_gain
 from flexbase.design.exact import exact
 from flexbase.design.hardware.registry import hardware_method
@@ -23,12 +26,21 @@ def none(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
 @hardware_method("recursion", "the paper's 800 iterations on measured accelerations")
 def recursion(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
     """Task PD with the recursion's E. Raises Infeasible where it does not converge."""
-    E = recursive(pose, natural_frequency=modes(pose)[0].frequency + FASTER, gains=gains).E
-    return pd_with_gain(pose, sensing, gains, E, "recursion")
+    return pd_with_gain(pose, sensing, gains, _recursion_gain(pose), "recursion")
 
 
 @hardware_method("exact", "the exact least gain on measured accelerations")
 def exact_gain(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
     """Task PD with the exact E at a frequency 100 rad/s up. Raises Infeasible where there is none."""
-    E = exact(pose, natural_frequency=modes(pose)[0].frequency + FASTER, gains=gains).E
-    return pd_with_gain(pose, sensing, gains, E, "exact")
+    return pd_with_gain(pose, sensing, gains, _exact_gain(pose), "exact")
+
+
+@lru_cache(maxsize=8)
+def _recursion_gain(pose: Pose) -> Array:
+    """E depends on the pose alone, and studies ask for it at several rates."""
+    return recursive(pose, natural_frequency=modes(pose)[0].frequency + FASTER).E
+
+
+@lru_cache(maxsize=8)
+def _exact_gain(pose: Pose) -> Array:
+    return exact(pose, natural_frequency=modes(pose)[0].frequency + FASTER).E

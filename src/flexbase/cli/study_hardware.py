@@ -1,0 +1,80 @@
+"""`flexbase study hardware`: which controllers run, over the workspace, at several rates and gains."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from cyclopts import App, Parameter
+
+from flexbase.cli.document import document
+from flexbase.cli.options import Json, option
+from flexbase.cli.out import OutFile, check_out, write_out, written
+from flexbase.cli.pose import Robot
+from flexbase.cli.progress import progress_bar
+from flexbase.cli.show import put, table, title
+from flexbase.cli.words import Names, names
+from flexbase.design.hardware import HARDWARE_METHODS
+from flexbase.plant import load
+from flexbase.study.hardware import HardwareStudy, hardware_study
+
+app = App(
+    name="hardware",
+    help_epilogue=f"""Examples:
+  flexbase study hardware ueda2003 --poses 400 --json
+  flexbase study hardware ur5e-pedestal --poses 100 --methods none,coprime
+
+Methods: {", ".join(HARDWARE_METHODS)}.
+Gain scale s stands for the project's gains as (s Kp, sqrt(s) Kv).""",
+)
+Out = Annotated[OutFile, Parameter(help="write the table as .json")]
+
+
+@app.default
+def study_hardware(
+    robot: Robot,
+    /,
+    *,
+    poses: Annotated[int, Parameter(metavar="N", help="random poses over the workspace")] = 400,
+    methods: Annotated[Names, option(names, "NAMES", "with commas; all if left out")] = (),
+    seed: Annotated[int, Parameter(metavar="N", help="another seed, other poses")] = 0,
+    workers: Annotated[int | None, Parameter(metavar="N", help="processes; one a core if left out")] = None,
+    out: Out = None,
+    json: Json = False,
+) -> None:
+    """Shares of the workspace where each controller is stable, keeps its margins, and survives a changed robot."""
+    check_out(out, (".json",))
+    plant = load(robot)
+    with progress_bar(plain_lines=True) as report:
+        found = hardware_study(
+            plant,
+            poses=poses,
+            seed=seed,
+            methods=methods or None,
+            workers=workers,
+            progress=lambda done, total: report("poses times methods", done, total),
+        )
+    content = found.to_dict()
+    write_out(out, "study hardware", found, content)
+    put(document("study hardware", content)) if json else put(*_tables(found), *written(out))
+
+
+def _tables(found: HardwareStudy) -> list[object]:
+    rows = [
+        [
+            row.method,
+            f"{row.rate_hz / 1e3:g} kHz x{row.gain_scale:g}",
+            *(f"{100.0 * share:.0f}" for share in (row.stable_share, row.margin_share, row.perturbed_share)),
+            f"{100.0 * row.complete_share:.0f}",
+            "none" if row.tip_stiffness is None else f"{row.tip_stiffness:.2g}",
+        ]
+        for row in found.rows
+    ]
+    heading = ["method", "rate, gains", "stable", "margin", "changed", "all", "stiffness N/m"]
+    said = f"  Shares of {found.rows[0].poses} poses in percent; half-width of the 95 % intervals up to "
+    widest = max(high - low for row in found.rows for low, high in (row.stable_interval, row.complete_interval))
+    return [
+        title(found.robot, "which controllers run"),
+        "",
+        table(heading, rows, words=(0, 1)),
+        said + f"{50 * widest:.0f}.",
+    ]

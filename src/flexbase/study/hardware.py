@@ -1,0 +1,215 @@
+"""Which controllers run? Shares of the workspace, at several rates and gains, with their intervals.  [theory §10]"""
+
+from __future__ import annotations
+
+import multiprocessing
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from flexbase.checks import choose
+from flexbase.control.hardware import GOOD_MARGIN
+from flexbase.control.sampled_controller import SampledController
+from flexbase.control.sampled_loop import close_loop, sensitivities, tip_stiffness
+from flexbase.control.sampled_plant import changed_pose, eight_changes
+from flexbase.design.hardware import HARDWARE_METHODS
+from flexbase.errors import FlexbaseError, FlexbaseWarning, InputError
+from flexbase.linear.disk_margin import disk_margin
+from flexbase.model.sensing import TYPICAL, Sensing
+from flexbase.model.task import Gains
+from flexbase.plant import Plant, Pose
+from flexbase.study.workspace import random_poses
+from flexbase.trace.kernel import cores
+
+
+class Setting(NamedTuple):
+    """A sampling rate [Hz], and gains (s Kp, sqrt(s) Kv) of the project's own."""
+
+    rate: float
+    scale: float
+
+
+SETTINGS = tuple(Setting(*pair) for pair in ((1e3, 0.25), (1e3, 1.0), (1e3, 4.0), (4e3, 1.0), (4e3, 4.0)))
+CONFIDENCE = 1.959963984540054  # standard deviations of a 95 % interval
+
+
+class Outcome(NamedTuple):
+    """One method at one pose: whether there is a design, and what it bears; stiffness in N/m, NaN if unstable."""
+
+    designed: bool
+    stable: bool
+    margin: bool
+    perturbed: bool
+    stiffness: float
+
+
+@dataclass(frozen=True)
+class Row:
+    """Shares of the poses at which a method is stable, has disk margins of 0.3, and survives all changes, in [0, 1].
+
+    margin_share : stable with both margins; perturbed_share : stable for the nominal and every changed robot
+    complete_share : all three at once; no_design_share : poses where the method finds no controller
+    tip_stiffness : median of the smallest static stiffness where stable [N/m]; None where it never is
+    *_interval : Wilson's 95 % intervals
+    """
+
+    method: str
+    rate_hz: float
+    gain_scale: float
+    poses: int
+    stable_share: float
+    margin_share: float
+    perturbed_share: float
+    complete_share: float
+    no_design_share: float
+    tip_stiffness: float | None
+    stable_interval: tuple[float, float]
+    margin_interval: tuple[float, float]
+    perturbed_interval: tuple[float, float]
+    complete_interval: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class HardwareStudy:
+    """The table of a study."""
+
+    robot: str
+    seed: int
+    rows: tuple[Row, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain numbers."""
+        return {"robot": self.robot, "seed": self.seed, "rows": [dict(vars(row)) for row in self.rows]}
+
+    def summary(self) -> str:
+        """A line a row: stable / margin / perturbed / all three in percent."""
+        lines = [
+            f"{self.robot}: stable / disk margin {GOOD_MARGIN} / survives all changes / all three [%], stiffness [N/m]"
+        ]
+        for row in self.rows:
+            shares = (row.stable_share, row.margin_share, row.perturbed_share, row.complete_share)
+            shown = " / ".join(f"{100.0 * share:3.0f}" for share in shares)
+            stiff = "none" if row.tip_stiffness is None else f"{row.tip_stiffness:.2e}"
+            lines.append(f"  {row.method:12s} {row.rate_hz:6.0f} Hz x{row.gain_scale:<5g} {shown}  {stiff}")
+        return "\n".join(lines)
+
+
+def hardware_study(
+    plant: Plant,
+    *,
+    poses: int = 400,
+    seed: int = 0,
+    methods: Sequence[str] | None = None,
+    settings: Sequence[Setting] = SETTINGS,
+    sensing: Sensing = TYPICAL,
+    workers: int | None = None,
+    progress: Callable[[int, int], None] = lambda done, total: None,
+) -> HardwareStudy:
+    """Every method at every setting on the same random poses, on `workers` processes (one a core if left out).
+
+    The poses are the tips that `random_poses` draws uniformly over the workspace. A method without a design at a pose
+    counts as unstable there.
+
+    sensing : delays and sensors; its rate is replaced by the setting's
+    Raises InputError.
+    """
+    chosen = list(HARDWARE_METHODS) if methods is None else list(methods)
+    for name in chosen:
+        choose("method", name, HARDWARE_METHODS)
+    if plant.arm.gains is None:
+        raise InputError(f"{plant.name}: no task gains. Add a [control] table to the project.")
+    drawn = random_poses(plant, poses, seed)
+    tasks = [(pose, name, settings, sensing) for pose in drawn for name in chosen]
+    found: dict[tuple[str, Setting], list[Outcome]] = {(name, one): [] for name in chosen for one in settings}
+    for done, (name, outcomes) in enumerate(_run(tasks, workers or cores()), start=1):
+        for setting, outcome in zip(settings, outcomes, strict=True):
+            found[name, setting].append(outcome)
+        progress(done, len(tasks))
+    return HardwareStudy(
+        plant.name, seed, tuple(_row(name, one, found[name, one]) for name in chosen for one in settings)
+    )
+
+
+Task = tuple[Pose, str, Sequence[Setting], Sensing]
+
+
+def _run(tasks: list[Task], workers: int) -> Iterator[tuple[str, list[Outcome]]]:
+    if workers == 1:
+        yield from map(outcomes_of, tasks)
+        return
+    with ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")) as pool:
+        futures = [pool.submit(outcomes_of, task) for task in tasks]
+        try:
+            for future in as_completed(futures):
+                yield future.result()
+        finally:
+            for future in futures:
+                future.cancel()
+
+
+def outcomes_of(task: Task) -> tuple[str, list[Outcome]]:
+    """One method at one pose, at every setting."""
+    pose, name, settings, sensing = task
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # cautions of designs: the verdict is what counts here
+        return name, [_outcome(pose, name, setting, sensing) for setting in settings]
+
+
+def _outcome(pose: Pose, name: str, setting: Setting, sensing: Sensing) -> Outcome:
+    gains = pose.arm.gains
+    assert gains is not None  # checked by the study
+    scaled = Gains(setting.scale * gains.stiffness, np.sqrt(setting.scale) * gains.damping)
+    at_rate = Sensing(**{**vars(sensing), "rate": setting.rate})
+    try:
+        controller = HARDWARE_METHODS[name].make(pose, at_rate, scaled)
+    except (FlexbaseError, FlexbaseWarning, np.linalg.LinAlgError):
+        return Outcome(False, False, False, False, float("nan"))
+    return judge(pose, controller)
+
+
+def judge(pose: Pose, controller: SampledController) -> Outcome:
+    """Stability, disk margins, changed robots and stiffness: the verdict without its slower parts."""
+    if close_loop(pose, controller).radius >= 1.0:
+        return Outcome(True, False, False, False, float("nan"))
+    margin = min(disk_margin(one).alpha for one in sensitivities(pose, controller))
+    perturbed = all(
+        close_loop(changed_pose(pose, change), controller).radius < 1.0 for change in eight_changes(pose.arm.n)
+    )
+    return Outcome(True, True, margin >= GOOD_MARGIN, perturbed, tip_stiffness(pose, controller))
+
+
+def _row(name: str, setting: Setting, outcomes: Sequence[Outcome]) -> Row:
+    count = len(outcomes)
+    stable = [one.stable for one in outcomes]
+    margin = [one.margin for one in outcomes]
+    perturbed = [one.perturbed for one in outcomes]
+    complete = [one.margin and one.perturbed for one in outcomes]
+    stiffness = [one.stiffness for one in outcomes if one.stable]
+    return Row(
+        name,
+        setting.rate,
+        setting.scale,
+        count,
+        float(np.mean(stable)),
+        float(np.mean(margin)),
+        float(np.mean(perturbed)),
+        float(np.mean(complete)),
+        float(np.mean([not one.designed for one in outcomes])),
+        float(np.median(stiffness)) if stiffness else None,
+        wilson(sum(stable), count),
+        wilson(sum(margin), count),
+        wilson(sum(perturbed), count),
+        wilson(sum(complete), count),
+    )
+
+
+def wilson(successes: int, trials: int) -> tuple[float, float]:
+    """Wilson's 95 % interval of a share."""
+    z2, p = CONFIDENCE**2, successes / trials
+    centre = (p + z2 / (2.0 * trials)) / (1.0 + z2 / trials)
+    half = CONFIDENCE / (1.0 + z2 / trials) * float(np.sqrt(p * (1.0 - p) / trials + z2 / (4.0 * trials**2)))
+    return max(0.0, centre - half), min(1.0, centre + half)
