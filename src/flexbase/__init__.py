@@ -22,7 +22,7 @@ from flexbase.model.task import Gains
 from flexbase.plant import Plant, Pose, load
 from flexbase.simulate import Run, simulate
 from flexbase.simulate.mjcf import to_mjcf
-from flexbase.sweep import open_dataset, summary, sweep
+from flexbase.sweep import difference, open_dataset, summary, sweep
 
 __version__ = "0.1.0"
 
@@ -49,6 +49,7 @@ __all__ = [
     "Unreachable",
     "__version__",
     "design",
+    "difference",
     "linearise",
     "load",
     "load_compensator",

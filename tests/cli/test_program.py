@@ -32,7 +32,7 @@ def test_help_lists_every_command(call: Call, words: tuple[str, ...]) -> None:
     shown = call(*words)
     assert shown.status == 0
     assert all(f"│ {command} " in shown.out for command in COMMANDS)
-    assert set(COMMANDS) == {"check", "modes", "design", "simulate", "ellipsoid", "map", "reproduce", "robots", "init"}
+    assert {"check", "modes", "design", "simulate", "map", "draw", "reproduce", "robots", "init"} <= set(COMMANDS)
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -51,7 +51,9 @@ SHOWN = {
     "simulate": "--from --to --elbow --branch --compensator --switch --end --trajectory --compensate --interval "
     "--self-motion --plant --stiffness --damping --out --json",
     "ellipsoid": "--tip --joints --elbow --branch --compensator --convention --out --json",
-    "map": "--over --shape --measure --measures --bounds --elbow --branch --hold --axes --compensator --out --json",
+    "map": "--over --shape --measure --measures --bounds --elbow --branch --hold --axes --vary --sampling --seed "
+    "--engine --resume --scheduler --workers --compensator --difference --out --json",
+    "draw": "--before --at --out",
     "reproduce": "--out --json",
     "robots": "--json",
     "init": "--schema",

@@ -12,9 +12,9 @@ from flexbase.cli.document import document
 from flexbase.cli.out import PICTURES, check_out, write_out
 from flexbase.cli.show import facts, table, title
 from flexbase.errors import InputError
-from flexbase.measures import MEASURES
-from flexbase.sweep import STATUS, save_csv, save_netcdf
 from flexbase.sweep import document as numbers
+from flexbase.sweep import save_csv, save_netcdf
+from flexbase.sweep.status import statuses_of
 from flexbase.sweep.summary import counts, extents, measures_of
 
 KINDS = (*PICTURES, ".html", ".csv", ".json", ".nc", ".zarr")
@@ -28,9 +28,11 @@ def tables(found: Any) -> list[RenderableType]:
         extent = [number(one.smallest, 7), number(one.largest, 7)] if known else ["none", "none"]
         rows.append([one.measure, str(one.mode) if one.mode else "", *extent, one.unit])
     axes = [(f"axis {name}", _extent(found[name])) for name in reversed(found["status"].dims)]
-    cells = [(STATUS[code], f"{count} cells") for code, count in counts(found).items()]
-    zeros = [(f"{name} = 0", MEASURES[name].zero_is or "") for name in measures_of(found) if MEASURES[name].zero_is]
-    heading = f"map {'with' if found.attrs['compensated'] else 'without'} compensator"
+    meanings = statuses_of(found)
+    cells = [(meanings[code], f"{count} cells") for code, count in counts(found).items()]
+    zeros = [(f"{name} = 0", zero) for name in measures_of(found) if (zero := found[name].attrs.get("zero_is"))]
+    state = f"{'with' if found.attrs['compensated'] else 'without'} compensator"
+    heading = f"map {found.attrs.get('difference', state)}"
     columns = ["measure", "mode", "smallest", "largest", "unit"]
     said = facts([*axes, *cells, *zeros])
     return [title(found.attrs["robot"], heading), "", said, table(columns, rows, words=(0, 4), blank_after=False)]

@@ -13,13 +13,12 @@ from flexbase.cli.options import CompensatorFile, Json, option
 from flexbase.cli.out import OutFile, written
 from flexbase.cli.plane import PlaneOptions
 from flexbase.cli.pose import Robot, compensator_of
-from flexbase.cli.progress import cells_bar
 from flexbase.cli.show import put
+from flexbase.cli.sweeping import check_difference, compared, swept
 from flexbase.cli.words import Names, names
 from flexbase.measures import MEASURES
 from flexbase.plant import load
 from flexbase.sweep import document as numbers
-from flexbase.sweep import sweep
 
 app = App(
     name="map",
@@ -27,6 +26,7 @@ app = App(
   flexbase map ueda2003 --out robustness.png
   flexbase map ueda2003 --measures robustness,alignment --over joints
   flexbase map ueda2003 --shape 10000,10000 --out big.zarr --resume
+  flexbase map ueda2003 --compensator E.json --difference --out change.html
   flexbase map ur5e-pedestal --hold 0.4 --vary payload=0:5:6 -o map.nc
 
 Measures: {", ".join(MEASURES)}.""",
@@ -45,32 +45,20 @@ def map_cells(
     plane: PlaneOptions = PlaneOptions(),  # noqa: B008
     execution: ExecutionOptions = ExecutionOptions(),  # noqa: B008
     compensator: CompensatorFile = None,
+    difference: Annotated[bool, Parameter(help="what the compensator changes: with it minus without")] = False,
     out: Out = None,
     json: Json = False,
 ) -> None:
     """Measures in every cell, the base at its equilibrium; cells out of reach or singular have none."""
     check_map_out(out, execution.resume)
+    check_difference(difference, compensator, out)
     plane.check()
     plant = load(robot)
     used = compensator_of(plant, compensator)
     store = out if out and out.suffix.lower() == ".zarr" else None
-    with cells_bar(store) as progress:
-        found = sweep(
-            plant,
-            measures,
-            plane.over,
-            plane.shape,
-            bounds=plane.bounds,
-            branch=plane.elbow,
-            axes=plane.axes,
-            hold=plane.hold,
-            vary=dict(plane.vary),
-            compensator=used,
-            sampling=plane.sampling,
-            seed=plane.seed,
-            store=store,
-            progress=progress,
-            **vars(execution),
-        )
+    if difference:
+        found = compared(plant, measures, plane, execution, used)
+    else:
+        found = swept(plant, measures, plane, execution, used, store)
     write_map(out, found)
     put(document("map", numbers(found))) if json else put(*tables(found), *written(out))

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from flexbase.dynamics.kinematics import Frames
-from flexbase.dynamics.spatial import momentum, point_mass, power, sum_of_inertias
+from flexbase.dynamics.spatial import momentum, power, sum_of_inertias
 from flexbase.trace.algebra import Matrix, Scalar, add
 
 
-def mass_matrix(frames: Frames, payload: Scalar = 0.0) -> Matrix:
-    """M(q), N x N symmetric, with a point mass at the tool [kg].  [U03 eq 1]"""
+def mass_matrix(frames: Frames) -> Matrix:
+    """M(q), N x N symmetric.  [U03 eq 1]"""
     size = len(frames.bodies)
     M: list[list[Scalar]] = [[0.0] * size for _ in range(size)]
-    carried_along = type(payload) is not float or payload != 0.0
-    composite = point_mass(payload, frames.tool_position) if carried_along else None
+    composite = None
     for i in reversed(range(size)):
         body = frames.bodies[i]
         composite = body if composite is None else sum_of_inertias(body, composite)

@@ -5,7 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-from flexbase.dynamics.spatial import IDENTITY, ZERO_VECTOR, Motion, SpatialInertia, inertia_at_origin
+from flexbase.dynamics.spatial import (
+    IDENTITY,
+    ZERO_VECTOR,
+    Motion,
+    SpatialInertia,
+    inertia_at_origin,
+    point_mass,
+    sum_of_inertias,
+)
 from flexbase.model.mechanism import Link, Mechanism
 from flexbase.trace.algebra import (
     Matrix,
@@ -32,6 +40,7 @@ class Frames:
     motions : joint i's unit motion, at the world origin
     rotations, coms : each body's orientation and centre of mass
     tool_rotation, tool_position : the tool frame
+    payload : a point mass at the tool [kg]
     """
 
     links: tuple[Link, ...]
@@ -40,14 +49,18 @@ class Frames:
     coms: tuple[Vector, ...]
     tool_rotation: Matrix
     tool_position: Vector
+    payload: Scalar = 0.0
 
     @cached_property
     def bodies(self) -> tuple[SpatialInertia, ...]:
-        """Each body's inertia, at the world origin."""
-        return tuple(
+        """Each body's inertia, at the world origin, the last one's with the payload."""
+        bodies = [
             inertia_at_origin(link.mass, com, link.inertia, rotation)
             for link, com, rotation in zip(self.links, self.coms, self.rotations, strict=True)
-        )
+        ]
+        if type(self.payload) is not float or self.payload != 0.0:
+            bodies[-1] = sum_of_inertias(bodies[-1], point_mass(self.payload, self.tool_position))
+        return tuple(bodies)
 
 
 def rotation_about(axis: tuple[float, ...], angle: Scalar) -> Matrix:

@@ -14,25 +14,28 @@ from flexbase.control.compensator import Compensator
 from flexbase.errors import InputError
 from flexbase.linear.modal import Modes
 from flexbase.measures.manipulability import Manipulability
-from flexbase.report.draw_chart import draw_chart, draw_dataset
 from flexbase.report.draw_compensator import draw_compensator
 from flexbase.report.draw_manipulability import draw_manipulability
 from flexbase.report.draw_modes import draw_modes
 from flexbase.report.draw_run import draw_run
+from flexbase.report.draw_sweep import draw_chart, draw_dataset
 from flexbase.report.save import check_picture_path, save_figure
 from flexbase.report.style import styled
 from flexbase.simulate import Run
 from flexbase.sweep.chart import Chart
 
+PAGE = ".html"
+
 
 @singledispatch
 def plot(result: object) -> Figure:
-    """A figure of a result: `Modes`, `Compensator`, `Run`, `Manipulability`, or a sweep's `Dataset`.
+    """A figure of a result: `Modes`, `Compensator`, `Run`, `Manipulability`, or the `Dataset` of a sweep.
 
-    The figure belongs to no window: save it with `save_plot`, or show it in a notebook.
+    A sweep may have one to three axes: curves, maps, slices. The figure belongs to no window: save it with `save_plot`,
+    or show it in a notebook.
     Raises InputError for anything else.
     """
-    if type(result).__module__.startswith("xarray"):  # a sweep; xarray itself takes long to import
+    if _is_dataset(result):
         return styled()(draw_dataset)(result)
     drawable = ", ".join(kind.__name__ for kind in plot.registry if kind is not object)
     raise InputError(f"plot: a {type(result).__name__} cannot be drawn. Give one of {drawable}.")
@@ -46,9 +49,19 @@ plot.register(Manipulability)(styled()(draw_manipulability))
 
 
 def save_plot(result: object, path: str | Path) -> None:
-    """Draw a result into a file, png, svg or pdf by its suffix.
+    """Draw a result into a file, png, svg or pdf by its suffix; sweeps also as html, one page that needs no network.
 
-    Raises InputError for a result that cannot be drawn, another suffix, or a place that cannot be written.
+    Raises InputError for a result that cannot be drawn, another suffix, or a place that cannot be written; MissingExtra
+    for a page without plotly.
     """
+    if Path(path).suffix.lower() == PAGE and (isinstance(result, Chart) or _is_dataset(result)):
+        from flexbase.report.page.write import save_page
+
+        return save_page(result, path)
     check_picture_path(path)  # before the work of drawing
     save_figure(plot(result), path)
+
+
+def _is_dataset(result: object) -> bool:
+    """Whether it is a sweep; xarray itself takes long to import."""
+    return type(result).__module__.startswith("xarray")

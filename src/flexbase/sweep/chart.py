@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 from flexbase.checks import Array
 from flexbase.errors import InputError
 from flexbase.measures import MEASURES
+from flexbase.sweep.angles import crossing
 from flexbase.sweep.axis import Axis
 from flexbase.sweep.layout import MODE
 from flexbase.sweep.status import statuses_of
 from flexbase.sweep.summary import measures_of
 
-LARGEST = 2000  # cells along an axis that are drawn: more are thinned out evenly
+LARGEST = 1000  # cells along an axis that are drawn: more are thinned out evenly
 SLICES = 6  # of a third axis
 POINTS = 200_000  # samples: the first so many, which are as evenly spread as all
 
@@ -27,7 +28,7 @@ class Layer(NamedTuple):
 
     values : shape of the chart's status, NaN where there is none
     zero_is : what zero means, or None where it means nothing
-    zero_line : where the values only touch zero, a companion of the same shape that changes its sign near 0 there
+    zeros : of the same shape, changes its sign where the values are zero, and nowhere else; None: zero means nothing
     """
 
     name: str
@@ -35,7 +36,7 @@ class Layer(NamedTuple):
     unit: str
     values: Array
     zero_is: str | None = None
-    zero_line: Array | None = None
+    zeros: Array | None = None
 
     @property
     def known(self) -> Array:
@@ -51,6 +52,7 @@ class Chart:
     axes : of the cells, fastest first: x, y, and the axis of slices; for samples, their number
     status : shape (slices, rows, columns), (rows, columns) or (cells,); `meanings` says what its codes are
     drawn : of samples, the coordinates that were drawn, each with one value a sample
+    cells : of the sweep, in words, of which the chart may show fewer; recipe : its digest, or nothing
     """
 
     robot: str
@@ -60,6 +62,8 @@ class Chart:
     status: NDArray[np.int8]
     meanings: Mapping[int, str]
     drawn: tuple[Axis, ...] = ()
+    cells: str = ""
+    recipe: str = ""
 
     @property
     def heading(self) -> str:
@@ -77,7 +81,7 @@ class Chart:
         axis = self.axes[2]
         for i, value in enumerate(axis.values):
             layers = tuple(
-                one._replace(values=one.values[i], zero_line=None if one.zero_line is None else one.zero_line[i])
+                one._replace(values=one.values[i], zeros=None if one.zeros is None else one.zeros[i])
                 for one in self.layers
             )
             words = said(axis.name, float(value), axis.unit)
@@ -103,10 +107,12 @@ def chart_of(dataset: Any, largest: int = LARGEST, slices: int = SLICES) -> Char
         str(plane.attrs["robot"]),
         _remark(plane),
         tuple(_axis(plane, dim) for dim in reversed(dims)),
-        tuple(_layers(plane, dims)),
+        tuple(_layers(plane)),
         plane["status"].values,
         statuses_of(plane),
         tuple(_axis(plane, name) for name in coordinates),
+        " x ".join(str(dataset.sizes[dim]) for dim in reversed(dims)),
+        str(plane.attrs.get("flexbase_recipe_digest", "")),
     )
 
 
@@ -123,8 +129,8 @@ def thinned(dataset: Any, largest: int = LARGEST, slices: int = SLICES) -> Any:
         raise InputError("plot: a single cell makes no picture. Read it with flexbase.summary, or ask for more cells.")
     if len(dims) > 3:
         raise InputError(
-            f"plot: this sweep has {len(dims)} axes ({', '.join(dims)}), a picture has up to three. Choose values of the "
-            f'others, such as dataset.sel({dims[0]}=..., method="nearest"), or flexbase draw --at {dims[0]}=...'
+            f"plot: this sweep has {len(dims)} axes ({', '.join(dims)}), a picture has up to three. Choose values of "
+            f'the others, with dataset.sel({dims[0]}=VALUE, method="nearest") or flexbase draw --at {dims[0]}=VALUE.'
         )
     if dims == ("sample",):
         return dataset.isel(sample=slice(0, POINTS))
@@ -152,27 +158,27 @@ def _chosen(size: int, slices: int) -> list[int]:
     if size <= slices:
         return list(range(size))
     even = [count for count in range(4, slices + 1) if (size - 1) % (count - 1) == 0]
-    return np.linspace(0, size - 1, max(even, default=slices)).round().astype(int).tolist()
+    return [round(place) for place in np.linspace(0, size - 1, max(even, default=slices)).tolist()]
 
 
 def _axis(plane: Any, name: str) -> Axis:
     return Axis(name, str(plane[name].attrs.get("units", "1")), plane[name].values)
 
 
-def _layers(plane: Any, dims: tuple[str, ...]) -> Iterator[Layer]:
+def _layers(plane: Any) -> Iterator[Layer]:
     for name in measures_of(plane):
         variable = plane[name]
         unit, zero_is = str(variable.attrs["units"]), variable.attrs.get("zero_is")
-        line = MEASURES[name].zero_line if zero_is == MEASURES[name].zero_is else None
-        companion = plane[line] if line in plane else None
-        if MODE not in variable.dims:
-            yield Layer(name, name, unit, variable.values, zero_is)
-            continue
-        several = plane.sizes[MODE] > 1
-        for i in range(plane.sizes[MODE]):
-            title = f"{name}, mode {i + 1}" if several else name
-            values = variable.isel({MODE: i}).values
-            yield Layer(name, title, unit, values, zero_is, None if companion is None else companion[..., i].values)
+        line = name  # or, where the measure only touches zero, its companion
+        if zero_is == MEASURES[name].zero_is and MEASURES[name].zero_line in plane:
+            line = MEASURES[name].zero_line or name
+        modes = range(plane.sizes[MODE]) if MODE in variable.dims else (None,)
+        for mode in modes:
+            values, zeros = (
+                (plane[one] if mode is None else plane[one].isel({MODE: mode})).values for one in (name, line)
+            )
+            title = f"{name}, mode {mode + 1}" if mode is not None and len(modes) > 1 else name
+            yield Layer(name, title, unit, values, zero_is, crossing(line, zeros) if zero_is else None)
 
 
 def _remark(plane: Any) -> str:

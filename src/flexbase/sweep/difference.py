@@ -8,10 +8,11 @@ import numpy as np
 
 from flexbase.checks import Array
 from flexbase.errors import InputError
+from flexbase.sweep.angles import short_way
 from flexbase.sweep.status import CHANGED, GAINED, LOST, OK, STATUS, flags
 from flexbase.sweep.summary import measures_of
 
-PERIOD = {"turn": 2.0 * np.pi, "axis_rotation": np.pi}  # of measures that are angles: their difference is the short one
+LARGEST = 20_000_000  # cells
 SAME = 1e-12  # of an axis' largest value: coordinates that differ by less are equal
 
 
@@ -19,13 +20,17 @@ def difference(before: Any, after: Any) -> Any:
     """After minus before in every cell, of the measures that both have; an `xarray.Dataset` of a sweep's form.
 
     Assumes the same axes with the same values. A measure has a value where both have one. Angles differ by the shorter
-    way round. `status` is 0 where both are ok; 5, "ok before only", or 6, "ok after only", where they disagree; otherwise
-    it is that of `after`.
+    way round. `status` is 0 where both are ok; 5, "ok before only", or 6, "ok after only", where they disagree;
+    otherwise it is that of `after`.
     before, after : what `sweep` or `open_dataset` returned, such as without and with a compensator
-    Both are read into memory: thin large stores first, with `dataset.isel(x=slice(None, None, 10))`.
-    Raises InputError where the cells differ or no measure is common.
+    Raises InputError where the cells differ, no measure is common, or there are more cells than memory holds.
     """
     _check_same_cells(before, after)
+    if after["status"].size > LARGEST:
+        raise InputError(
+            f"difference: {after['status'].size} cells; up to {LARGEST} are compared in memory. Thin both in the same "
+            f"way, such as dataset.isel({after['status'].dims[-1]}=slice(None, None, 10))."
+        )
     common = [name for name in measures_of(before) if name in measures_of(after)]
     if not common:
         raise InputError(
@@ -35,13 +40,14 @@ def difference(before: Any, after: Any) -> Any:
     found = after.drop_vars([name for name in after.data_vars if name not in common])
     for name in common:
         old, new = before[name], after[name].transpose(*before[name].dims)
-        values = _short_way(new.values - old.values, PERIOD.get(name))
+        values = short_way(name, new.values - old.values)
         said = {"units": new.attrs["units"], "long_name": f"change of {name}", "zero_is": "no change"}
         found[name] = (old.dims, values, said)
     then, now = before["status"], after["status"].transpose(*before["status"].dims)
     status = np.where(now == OK, np.where(then == OK, OK, GAINED), np.where(then == OK, LOST, now)).astype(np.int8)
     found["status"] = (then.dims, status, flags({**STATUS, **CHANGED}))
-    return found.assign_attrs(difference=_words(before, after))
+    recipe = before.attrs.get("flexbase_recipe", "")
+    return found.assign_attrs(difference=_words(before, after), flexbase_recipe_before=recipe)
 
 
 def _check_same_cells(before: Any, after: Any) -> None:
@@ -66,10 +72,6 @@ def _check_same_cells(before: Any, after: Any) -> None:
 
 def _extent(values: Array) -> str:
     return f"{values.size} values from {values.min():.6g} to {values.max():.6g}"
-
-
-def _short_way(change: Array, period: float | None) -> Array:
-    return change if period is None else change - period * np.round(change / period)
 
 
 def _words(before: Any, after: Any) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import warnings
 from pathlib import Path
 from typing import Any
@@ -9,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from flexbase.errors import FlexbaseWarning, InputError, import_extra
-from flexbase.sweep.store import FINISHED
+from flexbase.sweep.store import FINISHED, RECIPE
 
 
 def open_dataset(path: str | Path) -> Any:
@@ -27,13 +28,20 @@ def open_dataset(path: str | Path) -> Any:
             import_extra("zarr", "maps")
             found = xarray.open_zarr(place, consolidated=False, chunks=None)
             _warn_unfinished(place, found[FINISHED].values)
-            found = found.drop_vars(FINISHED)
-        found["status"].attrs["flag_meanings"], found.attrs["robot"]  # noqa: B018  (KeyError where there are none)
+            found = found[["status", *_measures(found)]]
+        _ = found["status"].attrs["flag_meanings"], found.attrs["robot"]  # KeyError where there are none
     except (OSError, ValueError, KeyError, TypeError) as fault:
         raise InputError(
             f"{path}: is no sweep of flexbase's. Give a .zarr folder or a .nc file that flexbase map wrote."
         ) from fault
     return found
+
+
+def _measures(found: Any) -> list[str]:
+    """Names of a store's measures in the order of its recipe: a folder has none."""
+    recipe = json.loads(found.attrs[RECIPE])["measures"]
+    rest = [name for name in found.data_vars if name not in (*recipe, "status", FINISHED)]
+    return [*(name for name in recipe if name in found), *rest]
 
 
 def _warn_unfinished(place: Path, finished: np.ndarray) -> None:

@@ -87,6 +87,7 @@ def document(dataset: Any) -> dict[str, Any]:
     return {
         "robot": dataset.attrs["robot"],
         "compensated": bool(dataset.attrs["compensated"]),
+        **({"difference": dataset.attrs["difference"]} if "difference" in dataset.attrs else {}),
         "axes": [
             {"name": name, "unit": dataset[name].attrs["units"], "values": dataset[name].values.tolist()}
             for name in reversed(dims)
