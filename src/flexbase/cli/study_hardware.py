@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from cyclopts import App, Parameter
+from rich.console import RenderableType
 
 from flexbase.cli.document import document
 from flexbase.cli.options import Json, option
@@ -58,7 +59,7 @@ def study_hardware(
     put(document("study hardware", content)) if json else put(*_tables(found), *written(out))
 
 
-def _tables(found: HardwareStudy) -> list[object]:
+def _tables(found: HardwareStudy) -> list[RenderableType]:
     rows = [
         [
             row.method,

@@ -25,7 +25,7 @@ class HardwareVerdict:
 
     stable : spectral radius below 1
     disk_margin_torque, disk_margin_sensor : alpha with all torque channels, or all sensors used, perturbed at once
-    delay_margin_s, lag_margin_s : further delay and first-order lag of all torques; None: no limit
+    delay_margin_s, lag_margin_s : further delay and first-order lag of all torques; None: no limit, or unstable
     algebraic_loop_radius, algebraic_loop_radius_per_joint : of the gain on accelerations inside; None without one
     worst_radius, worst_change : largest spectral radius over the changed robots, and which one
     survives : whether all of the changed robots are stable; failed : those that are not
@@ -73,11 +73,16 @@ class HardwareVerdict:
 
 
 def hardware_verdict(
-    controller: SampledController, pose: Pose | None = None, changes: Sequence[Changed] | None = None
+    controller: SampledController,
+    pose: Pose | None = None,
+    changes: Sequence[Changed] | None = None,
+    *,
+    brief: bool = False,
 ) -> HardwareVerdict:
     """The verdict on a controller at the pose it was made for, or at another one.
 
     changes : robots that differ from the model; `eight_changes` if left out
+    brief : leave out what takes longest: delay and lag margins and the radii of the algebraic loop, None then
     """
     here = controller.pose if pose is None else pose
     loop = close_loop(here, controller)
@@ -87,16 +92,16 @@ def hardware_verdict(
     radii = [close_loop(changed_pose(here, change), controller).radius for change in tried]
     worst = int(np.argmax(radii)) if radii else -1
     margins = [disk_margin(one).alpha for one in sensitivities(here, controller)] if stable else [0.0, 0.0]
-    around = loop_gain(here, controller)
-    E = controller.E
+    around = None if brief or not stable else loop_gain(here, controller)
+    E = None if brief else controller.E
     return HardwareVerdict(
         method=controller.name,
         stable=stable,
         spectral_radius=radius,
         disk_margin_torque=margins[0],
         disk_margin_sensor=margins[1],
-        delay_margin_s=_finite(delay_margin(around)) if stable else 0.0,
-        lag_margin_s=_finite(lag_margin(around)) if stable else 0.0,
+        delay_margin_s=None if around is None else _finite(delay_margin(around)),
+        lag_margin_s=None if around is None else _finite(lag_margin(around)),
         algebraic_loop_radius=None if E is None else algebraic_loop_radius(here, E),
         algebraic_loop_radius_per_joint=None if E is None else algebraic_loop_radius_per_joint(here, E),
         worst_radius=max(radii, default=radius),
