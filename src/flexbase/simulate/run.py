@@ -90,10 +90,10 @@ def simulate(
     if E is not None:
         check_definite_inertia(there, E)
     physics = choose("engine", engine, ENGINES)(there)
-    path = JointPath(here.q[m:], there.q[m:], switch, choose("trajectory", trajectory, LAWS))
+    path = JointPath(here.q[m:].tolist(), there.q[m:].tolist(), switch, choose("trajectory", trajectory, LAWS))
     phases: list[tuple[Law, float, float, Array | None]] = [
         (JointTracking(there, path, bandwidth), 0.0, switch, E if compensate == "always" else None),
-        (_settling_law(there, gains, compensator, self_motion), switch, end, E),
+        (settling_law(there, gains, compensator, self_motion), switch, end, E),
     ]
     state, parts, stopped = np.concatenate([here.q, np.zeros(plant.arm.N)]), [], None
     for law, begin, finish, gain in phases:
@@ -111,7 +111,7 @@ def simulate(
     )
 
 
-def _settling_law(goal: Pose, gains: Gains, compensator: HasGain | None, self_motion: float) -> Law:
+def settling_law(goal: Pose, gains: Gains, compensator: HasGain | None, self_motion: float) -> Law:
     """Task PD, and for a redundant arm the damping of its self-motion.  [theory §7]"""
     task = TaskPD(goal, gains)
     if goal.arm.n <= goal.arm.k or self_motion == 0.0:
