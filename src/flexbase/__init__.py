@@ -22,6 +22,7 @@ from flexbase.model.task import Gains
 from flexbase.plant import Plant, Pose, load
 from flexbase.simulate import Run, simulate
 from flexbase.simulate.mjcf import to_mjcf
+from flexbase.study.montecarlo import Criterion, Fixed, Lognormal, Normal, Probability, Uniform, montecarlo
 from flexbase.sweep import difference, open_dataset, summary, sweep
 
 __version__ = "0.1.0"
@@ -31,21 +32,27 @@ __all__ = [
     "METHODS",
     "Certificate",
     "Compensator",
+    "Criterion",
     "Ellipsoid",
+    "Fixed",
     "FlexbaseError",
     "FlexbaseWarning",
     "Gains",
     "Infeasible",
     "InputError",
+    "Lognormal",
     "Manipulability",
     "MissingExtra",
     "Mode",
     "Modes",
+    "Normal",
     "Plant",
     "Pose",
+    "Probability",
     "Run",
     "SecondOrder",
     "SingularArm",
+    "Uniform",
     "Unreachable",
     "__version__",
     "design",
@@ -55,6 +62,7 @@ __all__ = [
     "load_compensator",
     "manipulability",
     "modes",
+    "montecarlo",
     "open_dataset",
     "plot",
     "simulate",

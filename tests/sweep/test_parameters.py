@@ -13,6 +13,7 @@ from flexbase.sweep.evaluate import Engine, compiled
 from flexbase.sweep.parameters import configuration_of, parameters_of
 from flexbase.sweep.question import Question
 from flexbase.trace.algebra import stack
+from systems.changed import changed
 
 VALUES = {
     "stiffness": 1.3,
@@ -25,37 +26,6 @@ VALUES = {
     "link_mass.{arm}": 1.25,
     "link_com.{arm}": 1.2,
 }
-
-
-def changed(plant: fb.Plant, name: str, value: float) -> fb.Plant:
-    """The plant with one parameter written into its arrays: links rebuilt, springs scaled by diag(sqrt f)."""
-    arm = plant.arm
-    kind, _, joint = name.partition(".")
-    chosen = np.array([not joint or joint == one for one in arm.mechanism.joint_names])
-    base, mechanism = arm.base, arm.mechanism
-    if kind in ("stiffness", "damping"):
-        root = np.diag(np.where(chosen[: arm.m], np.sqrt(value), 1.0))
-        K = root @ base.stiffness @ root if kind == "stiffness" else base.stiffness
-        D = root @ base.damping @ root if kind == "damping" else base.damping
-        base = make_base(K, D, base.equilibrium, arm.m)
-    elif kind == "payload":
-        mass, com, inertia = mechanism.mass.copy(), mechanism.com.copy(), mechanism.inertia.copy()
-        tip, own = mechanism.tool_position, com[-1].copy()
-        mass[-1] += value
-        com[-1] = (mechanism.mass[-1] * own + value * tip) / mass[-1]
-        for weight, place in ((mechanism.mass[-1], own), (value, tip)):
-            gap = place - com[-1]
-            inertia[-1] = inertia[-1] + weight * (gap @ gap * np.eye(3) - np.outer(gap, gap))
-        mechanism = replace(mechanism, mass=mass, com=com, inertia=inertia)
-    else:
-        chosen[: arm.m] = False
-        factor = np.where(chosen, value, 1.0)
-        if kind == "link_mass":
-            mass, inertia = factor * mechanism.mass, factor[:, None, None] * mechanism.inertia
-            mechanism = replace(mechanism, mass=mass, inertia=inertia)
-        else:
-            mechanism = replace(mechanism, com=factor[:, None] * mechanism.com)
-    return fb.Plant(replace(arm, base=base, mechanism=mechanism))
 
 
 @pytest.mark.parametrize("robot", ["ueda2003", "ur5e-gantry", "panda-platform"])

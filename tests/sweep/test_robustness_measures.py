@@ -16,8 +16,7 @@ from flexbase.model.base import make_base
 from flexbase.sweep.evaluate import compiled
 from flexbase.sweep.question import Question
 from flexbase.sweep.status import INFEASIBLE, OK
-
-from .test_parameters import changed
+from systems.changed import changed
 
 
 def asked(plant: fb.Plant, names: tuple[str, ...], **more: object) -> Question:

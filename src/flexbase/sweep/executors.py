@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, Protocol
 
 from flexbase.checks import Array
 from flexbase.errors import InputError, import_extra
@@ -16,7 +16,15 @@ Result = tuple[Work, Mapping[str, Array]]
 AHEAD = 2  # blocks a thread that wait or run: bounds the memory
 
 
-def by_threads(job: Job, blocks: Sequence[Work]) -> Iterator[Result]:
+class Runs(Protocol):
+    """What blocks are given to."""
+
+    def run(self, work: Work) -> Mapping[str, Any]:
+        """The arrays of a block."""
+        ...
+
+
+def by_threads(job: Runs, blocks: Sequence[Work]) -> Iterator[Result]:
     """Run on all cores of this process. A block that has begun is finished even if the caller stops."""
     with ThreadPoolExecutor(cores(), thread_name_prefix="flexbase-sweep") as pool:
         running: dict[Future[Mapping[str, Array]], Work] = {}
