@@ -65,7 +65,8 @@ def _panel(ax: Axes, chart: Chart, layers: list[Layer]) -> None:
             marker = "." if np.isfinite(layer.values).sum() < 40 else ""
             ax.plot(x, layer.values, color=colour, marker=marker, label=label)
             zeros = zero_crossings(x, layer)
-            ax.plot(zeros, np.zeros_like(zeros), "o", color=colour, markerfacecolor="white", zorder=3)
+            if zeros.size:
+                ax.plot(zeros, np.zeros_like(zeros), "o", color=colour, markerfacecolor="white", zorder=3)
         if first.zero_is:
             ax.axhline(0.0, color=GREY, linewidth=0.8, zorder=0.5)
         if len(layers) > 1:
