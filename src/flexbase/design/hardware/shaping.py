@@ -1,0 +1,67 @@
+"""The plant as loop shaping sees it: task and self-motion forces in, weighted tip error and joints out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexbase.checks import Array
+from flexbase.control.null_space import self_motions
+from flexbase.control.sampled_plant import sampled_plant
+from flexbase.linear.discrete import Discrete, series, static
+from flexbase.model.sensing import Sensing
+from flexbase.model.task import Gains
+from flexbase.plant import Pose
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """Weights around a plant: what enters it and what is seen of it, both static.
+
+    into : torques of the shaped inputs, shape (n, n)
+    seen : shaped outputs of tip error, joints and accelerations, shape (outputs, k + 2n)
+    """
+
+    into: Array
+    seen: Array
+
+    def around(self, plant: Discrete) -> Discrete:
+        """The shaped plant."""
+        return series(series(static(self.into, plant.step), plant), static(self.seen, plant.step))
+
+    def unfold(self, controller: Discrete) -> Discrete:
+        """A controller of the shaped plant as one of the plant."""
+        return series(series(static(self.seen, controller.step), controller), static(self.into, controller.step))
+
+
+def design_plant(pose: Pose, sensing: Sensing) -> Discrete:
+    """The sampled plant without sensors of acceleration; a slower task sensor's hold counts as its mean delay."""
+    late = sensing.task_delay + sensing.task_every // 2
+    plain = replace(sensing, acceleration="encoders", task_every=1, task_delay=late)
+    n, k = pose.arm.n, pose.arm.k
+    return sampled_plant(pose, plain).select(list(range(k + 2 * n)), list(range(n)))
+
+
+def task_shape(pose: Pose, gains: Gains, scale: float, joint_weight: float, own: float = 1.0) -> Shape:
+    """Inputs f, tau = Jv^T f; outputs scale Kp e and joint_weight scale Kp Jv dq_a.  [theory §10]
+
+    Inputs and outputs each take the root of scale Kp, so that rows of different units weigh alike.
+
+    A redundant arm's self-motion gets an input and an output of its own, W dq_a with W Mhat^-1 Jv^T = 0, so that the
+    task cannot lose it: stiffness `own` times the mean of the task's, per inertia. [theory §7]
+    """
+    n, k, m = pose.arm.n, pose.arm.k, pose.arm.m
+    Jv, inertia = pose.J[:, m:], pose.M[m:, m:]
+    root = np.linalg.cholesky(scale * gains.stiffness)
+    W = np.zeros((0, n))
+    if n > k:
+        mobility = root.T @ Jv @ np.linalg.solve(inertia, Jv.T) @ root
+        W = np.sqrt(own * np.trace(mobility) / k) * (self_motions(pose, np.zeros((n, n))).T @ inertia)
+    blind = np.zeros((k, n))
+    rows = [np.hstack([root.T, blind, blind])]
+    if joint_weight > 0.0:
+        rows.append(np.hstack([np.zeros((k, k)), joint_weight * root.T @ Jv, blind]))
+    if n > k:
+        rows.append(np.hstack([np.zeros((n - k, k)), W, np.zeros((n - k, n))]))
+    return Shape(np.hstack([Jv.T @ root, W.T]), np.vstack(rows))
