@@ -8,10 +8,15 @@ from typing import Any
 import numpy as np
 
 from flexbase.checks import Array
+from flexbase.control.null_space import null_space_damping
+from flexbase.errors import Infeasible
 from flexbase.linear.discrete import Discrete, parallel, series, static
+from flexbase.linear.linearise import Gain
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
+
+SELF_MOTION = 20.0  # rad/s of a redundant arm's self-motion: below the base, so that it hardly drives it
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +59,19 @@ def joint_damping(pose: Pose, sensing: Sensing, damping: Array, stiffness: Array
     to = np.hstack([np.zeros((n, k)), np.eye(n), np.zeros((n, n))])
     rate = damping / sensing.step
     return Discrete(np.zeros((n, n)), to, rate, -(K + rate) @ to, sensing.step)
+
+
+def self_motion(pose: Pose, sensing: Sensing, E: Array | None) -> Discrete:
+    """Null-space damping of a redundant arm, sampled: blind to the base if it can be, else consistent.  [theory §7]
+
+    Assumes n > k.
+    """
+    gain = None if E is None else Gain(E)
+    try:
+        law = null_space_damping(pose, gain, frequency=SELF_MOTION)
+    except Infeasible:
+        law = null_space_damping(pose, gain, frequency=SELF_MOTION, kind="consistent")
+    return joint_damping(pose, sensing, law.W.T @ law.damping @ law.W, law.W.T @ law.stiffness @ law.W)
 
 
 def acceleration_feedback(pose: Pose, sensing: Sensing, E: Array) -> Discrete:
@@ -108,8 +126,10 @@ def _kalman(sensing: Sensing) -> Discrete:
 def pd_with_gain(
     pose: Pose, sensing: Sensing, gains: Gains, E: Array | None, name: str, damping: Array | None = None
 ) -> SampledController:
-    """Task PD, the compensator's acceleration feedback and joint damping, each where given."""
+    """Task PD, null-space damping of a redundant arm, acceleration feedback and joint damping, each where given."""
     parts = [task_pd(pose, sensing, gains)]
+    if pose.arm.n > pose.arm.k:
+        parts.append(self_motion(pose, sensing, E))
     if E is not None and np.any(E):
         parts.append(acceleration_feedback(pose, sensing, E))
     if damping is not None:

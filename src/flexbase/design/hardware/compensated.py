@@ -6,6 +6,7 @@ from functools import lru_cache
 
 from flexbase.checks import Array
 from flexbase.control.sampled_controller import SampledController, pd_with_gain
+from flexbase.design.convex import convex
 from flexbase.design.exact import exact
 from flexbase.design.hardware.registry import hardware_method
 from flexbase.design.recursive import recursive
@@ -33,6 +34,17 @@ def recursion(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
 def exact_gain(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
     """Task PD with the exact E at a frequency 100 rad/s up. Raises Infeasible where there is none."""
     return pd_with_gain(pose, sensing, gains, _exact_gain(pose), "exact")
+
+
+@hardware_method("convex", "the convex design's gain on measured accelerations, for any number of base joints")
+def convex_gain(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
+    """Task PD with the E of `convex`. Raises Infeasible where there is none."""
+    return pd_with_gain(pose, sensing, gains, _convex_gain(pose), "convex")
+
+
+@lru_cache(maxsize=8)
+def _convex_gain(pose: Pose) -> Array:
+    return convex(pose).E
 
 
 @lru_cache(maxsize=8)
