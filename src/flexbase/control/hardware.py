@@ -62,12 +62,12 @@ class HardwareVerdict:
         """What a person needs, in four lines."""
         if not self.stable:
             return f"{self.method}: unstable as it runs, spectral radius {self.spectral_radius:.4f} a sample"
-        delay = "no limit" if self.delay_margin_s is None else f"{1e3 * self.delay_margin_s:.3f} ms"
+        delay = "" if self.delay_margin_s is None else f"further delay {1e3 * self.delay_margin_s:.3f} ms; "
         kept = "survives all changes of the robot" if self.survives else f"fails with {', '.join(self.failed)}"
         return (
             f"{self.method}: stable, time constant {1e3 * (self.time_constant_s or 0.0):.1f} ms\n"
             f"  disk margin {self.disk_margin_torque:.3f} at torques, {self.disk_margin_sensor:.3f} at sensors\n"
-            f"  further delay {delay}; {kept}\n"
+            f"  {delay}{kept}\n"
             f"  static tip stiffness {self.tip_stiffness:.4g} N/m"
         )
 
