@@ -13,7 +13,7 @@ from flexbase.report.draw_curves import runs, zero_crossings
 from flexbase.report.map_signs import PATTERN, level_paths, outlines, scale_of
 from flexbase.report.plot import plot
 from flexbase.report.style import BLUE
-from flexbase.sweep.chart import Layer, chart_of
+from flexbase.sweep.chart import INFINITE, Layer, chart_of
 from flexbase.sweep.status import INFEASIBLE, LOST, UNREACHABLE
 
 
@@ -149,7 +149,7 @@ def test_samples_are_counted_and_placed(paper):
     shares = sum(bar.get_height() for bar in histogram.patches)
     assert shares <= 100.0 * known.mean() + 1e-9
     assert shares > 97.0 * known.mean()  # a hundredth at each end may lie beyond
-    assert any("without a value: no gain" in text.get_text() for text in histogram.get_legend().get_texts())
+    assert any("not shown: no gain" in text.get_text() for text in histogram.get_legend().get_texts())
     places = cloud.collections[0].get_offsets()
     expected = np.column_stack([dataset.q2.values, dataset.q3.values])[known]
     assert np.array_equal(np.asarray(places), expected)
@@ -194,3 +194,18 @@ def test_an_axis_of_one_value_does_not_count(paper):
     chart = chart_of(fb.sweep(paper, shape=(9, 1), bounds=(0.3, 0.4, -0.25, -0.24)))
     assert [axis.name for axis in chart.axes] == ["x"]
     assert chart.heading == "ueda2003, y = -0.25 m"
+
+
+def test_infinite_values_are_told_apart(paper):
+    """The highest gain has no bound where all scales are stable: pale, in the key, and no part of the colours."""
+    dataset = fb.sweep(paper, ("highest_gain",), shape=(21, 21))
+    endless = np.isinf(dataset.highest_gain.values)
+    assert 20 < endless.sum() < endless.size
+    chart = chart_of(dataset)
+    (layer,) = chart.layers
+    assert np.array_equal(chart.missing(layer)[INFINITE], endless)
+    figure = plot(dataset)
+    assert "infinite" in [text.get_text() for text in figure.legends[0].get_texts()]
+    assert np.isfinite(figure.axes[0].collections[0].norm.vmax)
+    same = fb.difference(dataset, dataset)
+    assert not same.highest_gain.values[endless].any()

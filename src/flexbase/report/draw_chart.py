@@ -16,7 +16,7 @@ from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
 
 from flexbase.checks import Array
-from flexbase.report.map_signs import PATTERN, UNKNOWN, Scale, outlines, scale_of, zero_paths
+from flexbase.report.map_signs import PATTERN, UNKNOWN, Scale, face, outlines, scale_of, zero_paths
 from flexbase.report.style import BLUE, HATCH, INK, new_figure
 from flexbase.sweep.axis import Axis
 from flexbase.sweep.chart import Chart, Layer
@@ -80,10 +80,10 @@ def panel(ax: Axes, chart: Chart, layer: Layer, scale: Scale | None) -> int:
     for code, cells in chart.missing(layer).items():
         for region in outlines(x, y, cells):
             hatch = PATTERN.get(code, UNKNOWN)
-            ax.add_patch(PathPatch(_path(region), facecolor="white", edgecolor=HATCH, hatch=hatch, linewidth=0))
+            ax.add_patch(PathPatch(_path(region), facecolor=face(code), edgecolor=HATCH, hatch=hatch, linewidth=0))
     if scale is not None and layer.known.size:
         norm = Normalize(scale.low, scale.high)
-        ax.pcolormesh(x, y, layer.values, norm=norm, cmap=scale.colours, shading="nearest", rasterized=True)
+        ax.pcolormesh(x, y, layer.finite, norm=norm, cmap=scale.colours, shading="nearest", rasterized=True)
         _levels(ax, x, y, layer, scale)
         for line in zeros:
             ax.plot(*line.T, color=BLUE, linewidth=2.0, solid_capstyle="butt")
@@ -116,7 +116,7 @@ def finish(figure: Figure, chart: Chart, more: str = "", zeros: int = 0) -> None
 def keys(chart: Chart, codes: Collection[int]) -> list[Patch]:
     """Patches for a legend: the hatch of each status and what it means."""
     return [
-        Patch(facecolor="white", edgecolor=HATCH, hatch=PATTERN[code], linewidth=0, label=meaning)
+        Patch(facecolor=face(code), edgecolor=HATCH, hatch=PATTERN[code], linewidth=0, label=meaning)
         for code, meaning in chart.meanings.items()
         if code in codes and code in PATTERN
     ]
@@ -170,7 +170,7 @@ def _levels(ax: Axes, x: Array, y: Array, layer: Layer, scale: Scale) -> None:
     levels = np.linspace(scale.low, scale.high, 17)[1:-1]
     inside = levels[(levels > layer.known.min()) & (levels < layer.known.max())]
     if inside.size and min(layer.values.shape) > 1:
-        ax.contour(x, y, layer.values, levels=inside, colors=[INK], linewidths=0.35, alpha=0.6, linestyles="solid")
+        ax.contour(x, y, layer.finite, levels=inside, colors=[INK], linewidths=0.35, alpha=0.6, linestyles="solid")
 
 
 def _path(region: Sequence[Array]) -> Path:

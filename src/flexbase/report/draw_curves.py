@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from flexbase.checks import Array
 from flexbase.report.draw_chart import finish, labelled, raised
-from flexbase.report.map_signs import PATTERN, UNKNOWN
+from flexbase.report.map_signs import PATTERN, UNKNOWN, face
 from flexbase.report.style import BLUE, GREEN, GREY, HATCH, ORANGE, PURPLE, RED, SKY, new_figure
 from flexbase.sweep.chart import Chart, Layer
 
@@ -58,12 +58,12 @@ def _panel(ax: Axes, chart: Chart, layers: list[Layer]) -> None:
     x = axis.values
     for code, cells in chart.missing(first).items():
         for begin, end in runs(x, cells):
-            ax.axvspan(begin, end, facecolor="white", edgecolor=HATCH, hatch=PATTERN.get(code, UNKNOWN), linewidth=0)
+            ax.axvspan(begin, end, facecolor=face(code), edgecolor=HATCH, hatch=PATTERN.get(code, UNKNOWN), linewidth=0)
     if any(layer.known.size for layer in layers):
         for colour, layer in zip(COLOURS, layers, strict=False):
             label = layer.title.removeprefix(f"{layer.name}, ")
             marker = "." if np.isfinite(layer.values).sum() < 40 else ""
-            ax.plot(x, layer.values, color=colour, marker=marker, label=label)
+            ax.plot(x, layer.finite, color=colour, marker=marker, label=label)
             zeros = zero_crossings(x, layer)
             if zeros.size:
                 ax.plot(zeros, np.zeros_like(zeros), "o", color=colour, markerfacecolor="white", zorder=3)

@@ -43,7 +43,7 @@ def middle(layer: Layer) -> tuple[float, float]:
 def missing_words(chart: Chart, layer: Layer) -> str:
     """How many samples have no value, and why, a line each."""
     gaps = chart.missing(layer).items()
-    return "\n".join(f"{np.count_nonzero(cells)} without a value: {chart.meanings[code]}" for code, cells in gaps)
+    return "\n".join(f"{np.count_nonzero(cells)} not shown: {chart.meanings[code]}" for code, cells in gaps)
 
 
 def _histogram(ax: Axes, chart: Chart, layer: Layer, scale: Scale | None) -> None:
@@ -71,7 +71,7 @@ def _histogram(ax: Axes, chart: Chart, layer: Layer, scale: Scale | None) -> Non
 def _cloud(figure: Figure, ax: Axes, chart: Chart, layer: Layer, scale: Scale | None) -> None:
     first, second = chart.drawn[:2]
     chosen = slice(0, DOTS)
-    x, y, values = first.values[chosen], second.values[chosen], layer.values[chosen]
+    x, y, values = first.values[chosen], second.values[chosen], layer.finite[chosen]
     gaps = ~np.isfinite(values)
     ax.plot(x[gaps], y[gaps], "x", color=HATCH, markersize=3.0, markeredgewidth=0.6, zorder=1)
     if scale is not None:

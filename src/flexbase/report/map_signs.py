@@ -11,8 +11,8 @@ from matplotlib.colors import Colormap, LinearSegmentedColormap
 from numpy.typing import NDArray
 
 from flexbase.checks import Array
-from flexbase.report.style import DIVERGING
-from flexbase.sweep.chart import Layer
+from flexbase.report.style import DIVERGING, PALE
+from flexbase.sweep.chart import INFINITE, Layer
 from flexbase.sweep.status import GAINED, INDEFINITE, INFEASIBLE, LOST, SINGULAR, UNREACHABLE
 
 TAIL = 4.0  # percent of the cells at either end that the colours may leave out
@@ -23,8 +23,14 @@ PATTERN = {  # of matplotlib's hatches
     INFEASIBLE: "|||",
     LOST: "\\\\\\",
     GAINED: "+++",
+    INFINITE: "",
 }
 UNKNOWN = ""  # no hatch: cells that are not computed yet
+
+
+def face(code: int) -> str:
+    """The colour under a pattern."""
+    return PALE if code == INFINITE else "white"
 
 
 class Scale(NamedTuple):

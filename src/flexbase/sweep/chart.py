@@ -20,6 +20,7 @@ from flexbase.sweep.summary import measures_of
 
 LARGEST = 1000  # cells along an axis that are drawn: more are thinned out evenly
 SLICES = 6  # of a third axis
+INFINITE = 15  # beside the codes of statuses: cells whose value has no bound
 POINTS = 200_000  # samples: the first so many, which are as evenly spread as all
 
 
@@ -39,8 +40,13 @@ class Layer(NamedTuple):
     zeros: Array | None = None
 
     @property
+    def finite(self) -> Array:
+        """The values, NaN where they are infinite."""
+        return np.where(np.isfinite(self.values), self.values, np.nan)
+
+    @property
     def known(self) -> Array:
-        """The values that there are, in a row."""
+        """The finite values, in a row."""
         return self.values[np.isfinite(self.values)]
 
 
@@ -71,9 +77,10 @@ class Chart:
         return f"{self.robot}, {self.remark}" if self.remark else self.robot
 
     def missing(self, layer: Layer) -> dict[int, NDArray[np.bool_]]:
-        """Cells without a value in a layer, by their status; none where a value exists, whatever the status."""
-        gaps = ~np.isfinite(layer.values)
+        """Cells that a layer cannot show, by their status; none where a value exists, whatever the status."""
+        gaps = np.isnan(layer.values)
         found = {code: gaps & (self.status == code) for code in self.meanings}
+        found[INFINITE] = np.isinf(layer.values)
         return {code: cells for code, cells in found.items() if cells.any()}
 
     def slices(self) -> Iterator[tuple[str, Chart]]:
@@ -109,7 +116,7 @@ def chart_of(dataset: Any, largest: int = LARGEST, slices: int = SLICES) -> Char
         tuple(_axis(plane, dim) for dim in reversed(dims)),
         tuple(_layers(plane)),
         plane["status"].values,
-        statuses_of(plane),
+        {**statuses_of(plane), INFINITE: "infinite"},
         tuple(_axis(plane, name) for name in coordinates),
         " x ".join(str(dataset.sizes[dim]) for dim in reversed(dims)),
         str(plane.attrs.get("flexbase_recipe_digest", "")),

@@ -40,7 +40,7 @@ def difference(before: Any, after: Any) -> Any:
     found = after.drop_vars([name for name in after.data_vars if name not in common])
     for name in common:
         old, new = before[name], after[name].transpose(*before[name].dims)
-        values = short_way(name, new.values - old.values)
+        values = short_way(name, _change(old.values, new.values))
         said = {"units": new.attrs["units"], "long_name": f"change of {name}", "zero_is": "no change"}
         found[name] = (old.dims, values, said)
     then, now = before["status"], after["status"].transpose(*before["status"].dims)
@@ -72,6 +72,12 @@ def _check_same_cells(before: Any, after: Any) -> None:
 
 def _extent(values: Array) -> str:
     return f"{values.size} values from {values.min():.6g} to {values.max():.6g}"
+
+
+def _change(old: Array, new: Array) -> Array:
+    """None between two infinite values."""
+    with np.errstate(invalid="ignore"):
+        return np.where(np.isinf(old) & (old == new), 0.0, new - old)
 
 
 def _words(before: Any, after: Any) -> str:

@@ -50,7 +50,7 @@ def _curves(chart: Chart, layers: list[Layer]) -> Panel:
                 **shared,
                 "mode": "lines",
                 "x": x,
-                "y": layer.values,
+                "y": layer.finite,
                 "line": {"color": colour, "width": 2, "simplify": False},
             }
         )
@@ -113,7 +113,7 @@ def _histogram(chart: Chart, layer: Layer) -> Panel:
 
 def _cloud(chart: Chart, layer: Layer) -> Panel:
     first, second = chart.drawn[:2]
-    x, y, values = (array[:DOTS] for array in (first.values, second.values, layer.values))
+    x, y, values = (array[:DOTS] for array in (first.values, second.values, layer.finite))
     known, scale = np.isfinite(values), scale_of(layer)
     where = f"{first.name} %{{x:.5g}} {unit_of(first)}<br>{second.name} %{{y:.5g}} {unit_of(second)}<br>"
     data: list[dict[str, Any]] = []
@@ -140,7 +140,7 @@ def _cloud(chart: Chart, layer: Layer) -> Panel:
                 "hovertemplate": text,
             }
         )
-    said = [] if known.all() else ["crosses: no value"]
+    said = [] if known.all() else ["crosses: no value that could be shown"]
     equal = {"scaleanchor": "x"} if first.unit == second.unit == "m" else {}
     across, up = {"title": {"text": labelled(first)}}, {"title": {"text": labelled(second)}, **equal}
     return {"data": data, "layout": layout(heading(layer, *said), across, up)}

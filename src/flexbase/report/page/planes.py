@@ -71,7 +71,7 @@ def _stack(chart: Chart, layer: Layer, scale: Scale) -> Panel:
     where += f"<b>{layer.title} %{{surfacecolor:.5g}} {layer_unit(layer)}</b><extra></extra>"
     data = []
     for i, height in enumerate(third.values):
-        values = layer.values[i, rows, columns].astype(np.float32)
+        values = layer.finite[i, rows, columns].astype(np.float32)
         data.append(
             {
                 "type": "surface", "x": first.values[columns], "y": second.values[rows],

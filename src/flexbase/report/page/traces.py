@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexbase.checks import Array
-from flexbase.report.map_signs import Scale, outlines, zero_paths
+from flexbase.report.map_signs import Scale, face, outlines, zero_paths
 from flexbase.report.style import BLUE, HATCH, INK, PALE
 from flexbase.sweep.axis import Axis
-from flexbase.sweep.chart import Chart, Layer
+from flexbase.sweep.chart import INFINITE, Chart, Layer
 from flexbase.sweep.status import GAINED, INDEFINITE, INFEASIBLE, LOST, SINGULAR, UNREACHABLE
 
 Trace = dict[str, Any]
-SHAPES = {UNREACHABLE: "/", SINGULAR: ".", INDEFINITE: "x", INFEASIBLE: "|", LOST: "\\", GAINED: "+"}  # of plotly
+SHAPES = {UNREACHABLE: "/", SINGULAR: ".", INDEFINITE: "x", INFEASIBLE: "|", LOST: "\\", GAINED: "+", INFINITE: ""}
 GAP = 16  # added to the status of a cell that has no value
 CLEAR = [[0.0, "rgba(0,0,0,0)"], [1.0, "rgba(0,0,0,0)"]]
 FONT = {"family": "DejaVu Sans, Verdana, sans-serif", "size": 13, "color": INK}
@@ -28,15 +28,15 @@ def plane_traces(chart: Chart, layer: Layer, scale: Scale | None) -> list[Trace]
 
     The second holds `codes`, a status for each cell, which the page turns into words when it opens.
     """
-    (first, second), values = chart.axes, np.asarray(layer.values, dtype=np.float32)
+    (first, second), values = chart.axes, layer.finite.astype(np.float32)
     x, y = first.values, second.values
     where = f"{first.name} %{{x:.5g}} {unit_of(first)}<br>{second.name} %{{y:.5g}} {unit_of(second)}<br>"
-    codes = (chart.status + GAP * np.isnan(values)).astype(np.int8)
+    codes = np.where(np.isinf(layer.values), INFINITE, chart.status) + GAP * np.isnan(values)
     shared = {"type": "heatmap", "x": x, "y": y}
     value = f"<b>{layer.title} %{{z:.5g}} {layer_unit(layer)}</b><br>%{{text}}<extra></extra>"
     traces: list[Trace] = [
         {**shared, "z": values, "hoverongaps": False, "hovertemplate": where + value, **_colours(layer, scale)},
-        {**shared, "codes": codes, "colorscale": CLEAR, "showscale": False, "hoverongaps": False}
+        {**shared, "codes": codes.astype(np.int8), "colorscale": CLEAR, "showscale": False, "hoverongaps": False}
         | {"hovertemplate": where + "%{text}<extra></extra>"},
     ]
     for code, cells in chart.missing(layer).items():
@@ -54,11 +54,11 @@ def plane_traces(chart: Chart, layer: Layer, scale: Scale | None) -> list[Trace]
 
 def area(x: Sequence[float] | Array, y: Sequence[float] | Array, code: int, **more: Any) -> Trace:
     """A hatched polygon in the sign of a status."""
-    pattern = {"shape": SHAPES.get(code, ""), "fgcolor": HATCH, "bgcolor": "white", "size": 7, "solidity": 0.15}
+    pattern = {"shape": SHAPES.get(code, ""), "fgcolor": HATCH, "bgcolor": face(code), "size": 7, "solidity": 0.15}
     line = {"width": 0, "color": HATCH}
     return {
         "type": "scatter", "mode": "lines", "x": x, "y": y, "fill": "toself", "fillpattern": pattern, "line": line,
-        "fillcolor": "white", "hoverinfo": "skip", "showlegend": False, "name": f"status {code}", **more,
+        "fillcolor": face(code), "hoverinfo": "skip", "showlegend": False, "name": f"status {code}", **more,
     }  # fmt: skip
 
 
