@@ -15,7 +15,9 @@ from flexbase.errors import (
 )
 from flexbase.linear.linearise import linearise
 from flexbase.linear.modal import Mode, Modes, modes
+from flexbase.linear.passivity import verdict
 from flexbase.linear.second_order import SecondOrder
+from flexbase.linear.verdict import Verdict
 from flexbase.measures import MEASURES
 from flexbase.measures.manipulability import Ellipsoid, Manipulability, manipulability
 from flexbase.model.task import Gains
@@ -54,6 +56,7 @@ __all__ = [
     "SingularArm",
     "Uniform",
     "Unreachable",
+    "Verdict",
     "__version__",
     "design",
     "difference",
@@ -69,6 +72,7 @@ __all__ = [
     "summary",
     "sweep",
     "to_mjcf",
+    "verdict",
 ]
 
 

@@ -46,6 +46,7 @@ def test_help_has_an_example_and_fits(call: Call, command: str) -> None:
 SHOWN = {
     "modes": "--tip --joints --elbow --branch --compensator --out --json",
     "check": "--tip --joints --elbow --branch --json",
+    "verdict": "--tip --joints --elbow --branch --compensator --bandwidth --out --json",
     "design": "--tip --joints --elbow --branch --method --natural-frequency --highest-frequency --objective --radius "
     "--margin --derivatives --step --iterations --seed --stiffness --damping --out --json",
     "simulate": "--from --to --elbow --branch --compensator --switch --end --trajectory --compensate --interval "
@@ -71,7 +72,7 @@ def test_help_names_what_the_registries_hold(call: Call) -> None:
     assert all(name in call("map", "--help").out for name in flexbase.MEASURES)
 
 
-@pytest.mark.parametrize("command", ["check", "modes", "design", "ellipsoid", "robots"])
+@pytest.mark.parametrize("command", ["check", "modes", "verdict", "design", "ellipsoid", "robots"])
 def test_examples_work(call: Call, command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every example line of the quick commands, in order, in one folder."""
     monkeypatch.chdir(tmp_path)

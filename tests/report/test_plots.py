@@ -45,6 +45,10 @@ def results(paper, paper_pose, recursion, exact) -> dict[str, object]:
         "two modes": fb.modes(two.at([0.5, 0.7])),
         "no mode": fb.modes(rigid.at([0.5, 0.7])),
         "mode of a cart": fb.modes(cart.at([0.1])),
+        "verdict": fb.verdict(paper_pose),
+        "verdict of a band": fb.verdict(paper_pose, exact, bandwidth=300.0),
+        "verdict of no mode": fb.verdict(rigid.at([0.5, 0.7])),
+        "verdict without damping": fb.verdict(planar([0.3, 0.3, 0.3], damping=0.0).at([0.5, 0.7])),
         "run": fb.simulate(paper, **run),
         "compensated run": fb.simulate(paper, **run, compensator=exact),
         "manipulability": fb.manipulability(paper_pose, exact),
@@ -58,7 +62,8 @@ def results(paper, paper_pose, recursion, exact) -> dict[str, object]:
 
 
 CASES = (
-    "recursion", "exact", "modes", "two modes", "no mode", "mode of a cart", "run", "compensated run", "manipulability",
+    "recursion", "exact", "modes", "two modes", "no mode", "mode of a cart", "verdict", "verdict of a band",
+    "verdict of no mode", "verdict without damping", "run", "compensated run", "manipulability",
     "torque manipulability", "one axis", "chart", "compensated chart", "joint chart", "empty chart",
 )  # fmt: skip
 
@@ -132,6 +137,23 @@ def test_history_plots_show_the_history(recursion):
     axes = plot(recursion).axes
     assert axes[0].lines[0].get_ydata() == pytest.approx(recursion.history["robustness"])
     assert axes[1].lines[0].get_ydata() == pytest.approx(recursion.history["frequency_rad_s"])
+
+
+def test_a_verdict_shades_where_it_fails(paper_pose):
+    """The curve is the least eigenvalue, its lowest point the shortage, and the dark band the worst half."""
+    found = fb.verdict(paper_pose)
+    ax = plot(found).axes[0]
+    line = next(line for line in ax.lines if "least" in str(line.get_label()))
+    omega, least = line.get_data()
+    assert least == pytest.approx(found.least_eigenvalue(np.asarray(omega)))
+    assert min(least) == pytest.approx(found.shortage, rel=1e-3)
+    ((low, high),) = found.half_at
+    band = (
+        next(patch for patch in ax.patches if "half" in str(patch.get_label()))
+        .get_extents()
+        .transformed(ax.transData.inverted())
+    )
+    assert (band.x0, band.x1) == pytest.approx((low, high), rel=1e-9)
 
 
 def test_joint_points_are_where_the_geometry_puts_them(paper_pose):

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from flexbase.control.compensator import Compensator
 from flexbase.errors import InputError
 from flexbase.linear.modal import Modes
+from flexbase.linear.verdict import Verdict
 from flexbase.measures.manipulability import Manipulability
 from flexbase.report.draw_compensator import draw_compensator
 from flexbase.report.draw_manipulability import draw_manipulability
@@ -20,6 +21,7 @@ from flexbase.report.draw_modes import draw_modes
 from flexbase.report.draw_run import draw_run
 from flexbase.report.draw_sweep import draw_chart, draw_dataset
 from flexbase.report.save import check_picture_path, save_figure
+from flexbase.report.draw_verdict import draw_verdict
 from flexbase.report.style import styled
 from flexbase.simulate import Run
 from flexbase.sweep.chart import Chart
@@ -29,7 +31,7 @@ PAGE = ".html"
 
 @singledispatch
 def plot(result: object) -> Figure:
-    """A figure of a result: `Modes`, `Compensator`, `Run`, `Manipulability`, or the `Dataset` of a sweep.
+    """A figure of a result: any of the types registered below, or the `Dataset` of a sweep.
 
     A sweep may have one to three axes: curves, maps, slices. The figure belongs to no window: save it with `save_plot`,
     or show it in a notebook.
@@ -44,6 +46,7 @@ def plot(result: object) -> Figure:
 plot.register(Modes)(styled()(draw_modes))
 plot.register(Compensator)(styled()(draw_compensator))
 plot.register(Run)(styled()(draw_run))
+plot.register(Verdict)(styled()(draw_verdict))
 plot.register(Chart)(styled()(draw_chart))
 plot.register(Manipulability)(styled()(draw_manipulability))
 
