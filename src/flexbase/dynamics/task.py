@@ -43,9 +43,14 @@ def target_at(task: Task, values: Array) -> Target:
 
 def task_error(frames: Frames, task: Task, target: Target) -> Array:
     """Tip position minus target, and log(R Rd^T) in world axes, the task's rows only, shape (..., k)."""
-    position = stack(frames.tool_position) - target.position
-    if not any(row >= 3 for row in task.indices):
-        return np.asarray(position[..., list(task.indices)])
-    turned = stack(frames.tool_rotation) @ np.swapaxes(target.rotation, -1, -2)
-    rotation = Rotation.from_matrix(turned).as_rotvec()
-    return np.asarray(np.concatenate(np.broadcast_arrays(position, rotation), axis=-1)[..., list(task.indices)])
+    turned = any(row >= 3 for row in task.indices)
+    return tool_error(stack(frames.tool_position), stack(frames.tool_rotation) if turned else None, task, target)
+
+
+def tool_error(position: Array, rotation: Array | None, task: Task, target: Target) -> Array:
+    """`task_error` of a tool frame, shapes (..., 3) and (..., 3, 3); None: a task without rotation rows."""
+    away = position - target.position
+    if rotation is None or not any(row >= 3 for row in task.indices):
+        return np.asarray(away[..., list(task.indices)])
+    vector = Rotation.from_matrix(rotation @ np.swapaxes(target.rotation, -1, -2)).as_rotvec()
+    return np.asarray(np.concatenate(np.broadcast_arrays(away, vector), axis=-1)[..., list(task.indices)])
