@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 import flexbase as fb
+from flexbase.report.plot import save_plot
 from flexbase.sweep import save_csv
 
 plant = fb.load("ueda2003")
@@ -21,7 +22,19 @@ for row in range(len(robustness) - 1, -1, -12):
     levels = np.minimum(9.99, 10.0 * robustness[row, ::6] / np.nanmin(robustness))
     print("  " + "".join(" " if np.isnan(level) else str(int(level)) for level in levels))
 
+pose = plant.at_tip([0.33, -0.25])
+compensated = fb.sweep(
+    plant,
+    measures=["robustness"],
+    shape=(200, 200),
+    compensator=fb.design(pose, method="exact", natural_frequency=346.8),
+)
+change = fb.difference(chart, compensated)  # of what both have
+print(f"\nWith a compensator for one pose:\n{fb.summary(change)}")
+
 out = Path("out/examples")
 out.mkdir(parents=True, exist_ok=True)
 save_csv(chart, out / "map.csv")
-print(f"\nAll cells: {out / 'map.csv'}")
+save_plot(chart, out / "map.png")
+save_plot(change, out / "change.png")  # with plotly, a name that ends in .html gives an interactive page
+print(f"\nWritten to {out}: map.csv, map.png, change.png")
