@@ -24,7 +24,12 @@ from flexbase.model.task import Gains
 from flexbase.plant import Plant, Pose, load
 from flexbase.simulate import Run, simulate
 from flexbase.simulate.mjcf import to_mjcf
+from flexbase.study.layout import Layout, best_layout
 from flexbase.study.montecarlo import Criterion, Fixed, Lognormal, Normal, Probability, Uniform, montecarlo
+from flexbase.study.posture import Postures, best_posture
+from flexbase.study.robust_curves import RobustCurves, robust_curves
+from flexbase.study.robust_points import RobustPoints, robust_points
+from flexbase.study.targets import read_targets
 from flexbase.sweep import difference, open_dataset, summary, sweep
 
 __version__ = "0.1.0"
@@ -42,6 +47,7 @@ __all__ = [
     "Gains",
     "Infeasible",
     "InputError",
+    "Layout",
     "Lognormal",
     "Manipulability",
     "MissingExtra",
@@ -50,7 +56,10 @@ __all__ = [
     "Normal",
     "Plant",
     "Pose",
+    "Postures",
     "Probability",
+    "RobustCurves",
+    "RobustPoints",
     "Run",
     "SecondOrder",
     "SingularArm",
@@ -58,6 +67,8 @@ __all__ = [
     "Unreachable",
     "Verdict",
     "__version__",
+    "best_layout",
+    "best_posture",
     "design",
     "difference",
     "linearise",
@@ -68,6 +79,9 @@ __all__ = [
     "montecarlo",
     "open_dataset",
     "plot",
+    "read_targets",
+    "robust_curves",
+    "robust_points",
     "simulate",
     "summary",
     "sweep",

@@ -11,3 +11,7 @@ Elbow = Annotated[
     str | None,
     option(sign, "+|-", "elbow; or shoulder, elbow, wrist: +-+; else the project's", ("--elbow", "--branch")),
 ]
+AnyElbow = Annotated[
+    str | None,
+    option(sign, "+|-", "elbow; or shoulder, elbow, wrist: +-+; else the best", ("--elbow", "--branch")),
+]

@@ -16,14 +16,22 @@ from flexbase.linear.modal import Modes
 from flexbase.linear.verdict import Verdict
 from flexbase.measures.manipulability import Manipulability
 from flexbase.report.draw_compensator import draw_compensator
+from flexbase.report.draw_layout import draw_layout
 from flexbase.report.draw_manipulability import draw_manipulability
 from flexbase.report.draw_modes import draw_modes
+from flexbase.report.draw_postures import draw_postures
+from flexbase.report.draw_robust_curves import draw_robust_curves
+from flexbase.report.draw_robust_points import draw_robust_points
 from flexbase.report.draw_run import draw_run
 from flexbase.report.draw_sweep import draw_chart, draw_dataset
 from flexbase.report.save import check_picture_path, save_figure
 from flexbase.report.draw_verdict import draw_verdict
 from flexbase.report.style import styled
 from flexbase.simulate import Run
+from flexbase.study.layout import Layout
+from flexbase.study.posture import Postures
+from flexbase.study.robust_curves import RobustCurves
+from flexbase.study.robust_points import RobustPoints
 from flexbase.sweep.chart import Chart
 
 PAGE = ".html"
@@ -49,6 +57,10 @@ plot.register(Run)(styled()(draw_run))
 plot.register(Verdict)(styled()(draw_verdict))
 plot.register(Chart)(styled()(draw_chart))
 plot.register(Manipulability)(styled()(draw_manipulability))
+plot.register(Postures)(styled()(draw_postures))
+plot.register(RobustCurves)(styled()(draw_robust_curves))
+plot.register(RobustPoints)(styled()(draw_robust_points))
+plot.register(Layout)(styled()(draw_layout))
 
 
 def save_plot(result: object, path: str | Path) -> None:
