@@ -54,6 +54,8 @@ SHOWN = {
     "ellipsoid": "--tip --joints --elbow --branch --compensator --convention --out --json",
     "map": "--over --shape --measure --measures --bounds --elbow --branch --hold --axes --vary --sampling --seed "
     "--engine --resume --scheduler --workers --compensator --difference --out --json",
+    "montecarlo": "--tip --joints --elbow --branch --over --shape --bounds --axes --hold --vary --criterion --criteria "
+    "--samples --seed --sampling --compensator --redesign --engine --out --json",
     "draw": "--before --at --out",
     "reproduce": "--out --json",
     "robots": "--json",

@@ -28,10 +28,10 @@ POSITIVE_REAL = 1e-8  # relative passivity shortage (1 - cos)/2 up to which a re
 VANISHING = 1e-12  # a mode that the tip sees or drives less than this, relative, is out of its reach
 ONE_JOINT = "One base joint: exact, at any damping."
 UNDAMPED = "Undamped base: exact in the limit of vanishing damping."
-PROPORTIONAL = "Proportional damping: positive residues are sufficient, not necessary."
-INDICATOR = "Non-proportional damping: the residues are an indicator only, neither necessary nor sufficient."
+PROPORTIONAL = "Proportional damping: positive residues are sufficient, not necessary; `verdict` is exact."
+INDICATOR = "Non-proportional damping: residues neither necessary nor sufficient, an indicator; `verdict` is exact."
 ONE_BETA = "V = beta Jp with one beta outside (0, 1): positive real at any damping of the base."
-COUPLED = "Gravity stiffness or joint friction couples arm and base: the residues are an indicator only."
+COUPLED = "Gravity stiffness or joint friction couples arm and base: an indicator only; `verdict` is exact."
 RIGID = "Rigid base: no vibration mode."
 
 

@@ -103,8 +103,10 @@ def _intervals(
 def _output_index(vibration: Vibration, whole: Port, gain: float, positive: bool, unbounded: bool) -> float | None:
     if unbounded:
         return -np.inf
+    if positive and (vibration.undamped or vibration.rigid.any()):
+        return 0.0  # poles on the axis bear no feedback taken off
     if vibration.undamped:
-        return 0.0 if positive else None
+        return None
     return output_index(whole, gain, vibration.rigid) if gain > 0.0 else 0.0
 
 

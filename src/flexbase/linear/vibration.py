@@ -1,6 +1,6 @@
 """A second-order response taken apart: rigid motion, undamped modes, unstable ones, and the damped rest.  [theory §5]
 
-In coordinates with M = I and K diagonal a motion with D phi = 0 is coupled to no other: it is an undamped mode, or at
+In coordinates with M = I and K diagonal a mode with D phi = 0 is coupled to no other: it is an undamped mode, or at
 frequency 0 a rigid motion, on top of the imaginary axis, and can be taken off without an error in the rest.
 """
 
