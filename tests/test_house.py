@@ -30,6 +30,7 @@ def test_a_command_file_has_at_most_80_lines():
         "simulate",
         "ellipsoid",
         "map",
+        "montecarlo",
         "draw",
         "posture",
         "rac",

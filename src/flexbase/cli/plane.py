@@ -17,16 +17,27 @@ PLANE = Group("Cells", sort_key=10)
 
 @Parameter(name="*", group=PLANE)
 @dataclass(frozen=True)
-class PlaneOptions:
+class CellOptions:
     """Axes and what stays put."""
 
-    over: Annotated[str, Parameter(metavar="NAME", help="tip (if left out), joints, or samples of joints")] = "tip"
-    shape: Annotated[tuple[int, ...] | None, option(counts, "N,N", "cells along each axis; 400,400 if left out")] = None
+    over: Annotated[str, Parameter(metavar="NAME", help="tip (if left out) or joints; map: also samples of joints")] = (
+        "tip"
+    )
+    shape: Annotated[
+        tuple[int, ...] | None, option(counts, "N,N", "cells along each axis; map 400,400, montecarlo 100,100")
+    ] = None
     bounds: Annotated[
         Vector | None, option(numbers, "LO,HI,LO,HI", "of the axes in turn; all that is reached [m, rad]")
     ] = None
     axes: Annotated[Names, option(names, "Q,Q", "which task rows or joints vary; two if left out")] = ()
     hold: Annotated[Vector, option(numbers, "NUMBERS", "over tip: the other rows; else: all arm joints")] = ()
+
+
+@Parameter(name="*", group=PLANE)
+@dataclass(frozen=True)
+class PlaneOptions(CellOptions):
+    """And what else varies."""
+
     elbow: Elbow = None
     vary: Annotated[
         Ranges,

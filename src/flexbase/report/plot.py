@@ -20,15 +20,17 @@ from flexbase.report.draw_layout import draw_layout
 from flexbase.report.draw_manipulability import draw_manipulability
 from flexbase.report.draw_modes import draw_modes
 from flexbase.report.draw_postures import draw_postures
+from flexbase.report.draw_probability import draw_probability
 from flexbase.report.draw_robust_curves import draw_robust_curves
 from flexbase.report.draw_robust_points import draw_robust_points
 from flexbase.report.draw_run import draw_run
 from flexbase.report.draw_sweep import draw_chart, draw_dataset
-from flexbase.report.save import check_picture_path, save_figure
 from flexbase.report.draw_verdict import draw_verdict
+from flexbase.report.save import check_picture_path, save_figure
 from flexbase.report.style import styled
 from flexbase.simulate import Run
 from flexbase.study.layout import Layout
+from flexbase.study.montecarlo import Probability
 from flexbase.study.posture import Postures
 from flexbase.study.robust_curves import RobustCurves
 from flexbase.study.robust_points import RobustPoints
@@ -52,15 +54,16 @@ def plot(result: object) -> Figure:
 
 
 plot.register(Modes)(styled()(draw_modes))
+plot.register(Verdict)(styled()(draw_verdict))
 plot.register(Compensator)(styled()(draw_compensator))
 plot.register(Run)(styled()(draw_run))
-plot.register(Verdict)(styled()(draw_verdict))
 plot.register(Chart)(styled()(draw_chart))
 plot.register(Manipulability)(styled()(draw_manipulability))
 plot.register(Postures)(styled()(draw_postures))
 plot.register(RobustCurves)(styled()(draw_robust_curves))
 plot.register(RobustPoints)(styled()(draw_robust_points))
 plot.register(Layout)(styled()(draw_layout))
+plot.register(Probability)(styled()(draw_probability))
 
 
 def save_plot(result: object, path: str | Path) -> None:

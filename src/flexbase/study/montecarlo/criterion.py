@@ -41,14 +41,18 @@ class Criterion:
         return np.asarray(inside.all(axis=1) if inside.ndim == 2 else inside)
 
     def __str__(self) -> str:
-        """In words: `robust: shortage <= 0.01`."""
+        """In words: `robust: shortage <= 0.01`, `frequency >= 300 rad/s`."""
         if self.measure is None:
             return f"{self.name}: M - E positive definite"
         unit = MEASURES[self.measure].unit
-        sign = "<" if self.open else "<="
-        low = f"{self.low:g} {sign} " if np.isfinite(self.low) else ""
-        high = f" {sign} {self.high:g}" if np.isfinite(self.high) else ""
-        return f"{self.name}: {low}{self.measure}{high}{'' if unit == '1' else f' {unit}'}"
+        unit = "" if unit == "1" else f" {unit}"
+        less, more = ("<", ">") if self.open else ("<=", ">=")
+        prefix = "" if self.name == self.measure else f"{self.name}: "
+        if not np.isfinite(self.low):
+            return f"{prefix}{self.measure} {less} {self.high:g}{unit}"
+        if not np.isfinite(self.high):
+            return f"{prefix}{self.measure} {more} {self.low:g}{unit}"
+        return f"{prefix}{self.low:g} {less} {self.measure} {less} {self.high:g}{unit}"
 
 
 CRITERIA = {

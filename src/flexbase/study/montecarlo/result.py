@@ -12,7 +12,7 @@ import numpy as np
 
 from flexbase.checks import Array
 from flexbase.errors import InputError
-from flexbase.study.montecarlo.interval import CONFIDENCE, Estimate
+from flexbase.study.montecarlo.interval import CONFIDENCE, Estimate, probability_interval
 from flexbase.sweep.status import INFEASIBLE, OK, STATUS
 from flexbase.sweep.summary import save_netcdf
 
@@ -45,6 +45,16 @@ class Probability:
         if self.dataset["probability"].size != 1:
             raise InputError("at_pose: this is a map. Read its cells from dataset.probability, or ask share_at_least.")
         return Estimate(*(float(self.dataset[name].values.item()) for name in ("probability", "lower", "upper")))
+
+    @property
+    def by_criterion(self) -> dict[str, Estimate]:
+        """Of one pose, or of a map's single cell: each criterion by itself. Raises InputError for more."""
+        self.at_pose  # noqa: B018
+        draws = int(self.dataset.sizes["draw"])
+        values = self.dataset["criterion_probability"].values.ravel()
+        lower, upper = probability_interval(np.rint(values * draws).astype(np.int64), draws)
+        names = self.dataset["criterion"].values.tolist()
+        return {name: Estimate(*map(float, row)) for name, *row in zip(names, values, lower, upper, strict=True)}
 
     @property
     def cells(self) -> int:

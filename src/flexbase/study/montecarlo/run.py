@@ -101,7 +101,7 @@ def montecarlo(
     attributes = {
         "robot": plant.name,
         "model": model_digest(arm),
-        "design": "with compensator" if E is not None else "exact design of each cell" if redesign else "bare plant",
+        "design": "with compensator" if E is not None else "exact design of each pose" if redesign else "bare plant",
         "vary": "; ".join(f"{name} {written(one)}" for name, one in distributions.items()),
         "criteria": "; ".join(map(str, asked)),
         "sampling": sampling,
@@ -125,7 +125,14 @@ def _place(
 ) -> tuple[MountedArm, Place]:
     """The arm, with a pose's own equilibrium, and its cells; a pose is a grid without axes."""
     if isinstance(where, Pose):
-        given = {"shape": shape, "bounds": bounds, "branch": branch, "axes": tuple(axes), "hold": tuple(hold)}
+        given = {
+            "over": None if over == "tip" else over,
+            "shape": shape,
+            "bounds": bounds,
+            "branch": branch,
+            "axes": tuple(axes),
+            "hold": tuple(hold),
+        }
         for name, value in given.items():
             if value not in (None, ()):
                 raise InputError(f"{name}: belongs to a map, but a pose is given. Leave it out, or give the plant.")
