@@ -16,6 +16,7 @@ from flexbase.study.posture import Posture, Postures
 
 MOST = 10  # postures with a row of their own
 COLORS = (BLUE, RED, GREEN, ORANGE, PURPLE, SKY)
+SPREAD = 0.18  # of a row, between the modes
 WIDE = 100.0  # largest over smallest value from which the axis is logarithmic
 MARK = 0.2  # of the arm's extent: the drawn size of a base joint's axis
 
@@ -61,12 +62,30 @@ def _values(ax: Axes, result: Postures) -> None:
     values = np.array([one.modes for _, one in shown])
     negated = bool((values <= 0.0).all())
     drawn = -values if negated else values
+    apart = np.linspace(-SPREAD, SPREAD, drawn.shape[1]) if drawn.shape[1] > 1 else np.zeros(1)
     for mode in range(drawn.shape[1]):
         name = f"mode {mode + 1}" if drawn.shape[1] > 1 else None
-        ax.plot(drawn[:, mode], np.arange(len(shown)), "o", color=COLORS[mode], markersize=5, alpha=0.85, label=name)
+        ax.plot(
+            drawn[:, mode],
+            np.arange(len(shown)) + apart[mode],
+            "o",
+            color=COLORS[mode],
+            markersize=5,
+            alpha=0.85,
+            label=name,
+        )
     if drawn.shape[1] > 1:
-        worst = drawn.max(axis=1) if negated else drawn.min(axis=1)
-        ax.plot(worst, np.arange(len(shown)), "o", color=INK, markerfacecolor="none", markersize=9, label="counts")
+        worst = drawn.argmax(axis=1) if negated else drawn.argmin(axis=1)
+        rows = np.arange(len(shown))
+        ax.plot(
+            drawn[rows, worst],
+            rows + apart[worst],
+            "o",
+            color=INK,
+            markerfacecolor="none",
+            markersize=9,
+            label="counts",
+        )
         ax.legend(loc="best")
     if (drawn > 0.0).all() and drawn.max() > WIDE * drawn.min():
         ax.set_xscale("log")
