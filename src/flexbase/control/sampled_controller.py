@@ -62,7 +62,13 @@ def joint_damping(pose: Pose, sensing: Sensing, damping: Array, stiffness: Array
 
 
 def self_motion(pose: Pose, sensing: Sensing, E: Array | None) -> Discrete:
-    """Null-space damping of a redundant arm, sampled: blind to the base if it can be, else consistent.  [theory §7]
+    """Null-space damping of a redundant arm, sampled. Assumes n > k."""
+    stiffness, damping = self_motion_gains(pose, E)
+    return joint_damping(pose, sensing, damping, stiffness)
+
+
+def self_motion_gains(pose: Pose, E: Array | None) -> tuple[Array, Array]:
+    """Stiffness and damping on the joints, both (n, n): blind to the base if they can be, else consistent.  [theory §7]
 
     Assumes n > k.
     """
@@ -71,7 +77,7 @@ def self_motion(pose: Pose, sensing: Sensing, E: Array | None) -> Discrete:
         law = null_space_damping(pose, gain, frequency=SELF_MOTION)
     except Infeasible:
         law = null_space_damping(pose, gain, frequency=SELF_MOTION, kind="consistent")
-    return joint_damping(pose, sensing, law.W.T @ law.damping @ law.W, law.W.T @ law.stiffness @ law.W)
+    return law.W.T @ law.stiffness @ law.W, law.W.T @ law.damping @ law.W
 
 
 def acceleration_feedback(pose: Pose, sensing: Sensing, E: Array) -> Discrete:

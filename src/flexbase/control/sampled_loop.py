@@ -10,6 +10,7 @@ from flexbase.checks import Array
 from flexbase.control.sampled_controller import SampledController
 from flexbase.control.sampled_plant import sampled_plant
 from flexbase.linear.discrete import Discrete, delay, feedback, series, side_by_side, spectral_radius, static
+from flexbase.model.sensing import Sensing
 from flexbase.plant import Pose
 
 
@@ -32,16 +33,11 @@ class SampledLoop:
 
 def close_loop(pose: Pose, controller: SampledController) -> SampledLoop:
     """The controller on the plant of a pose, which need not be the one that it was made for."""
-    sensing = controller.sensing
-    plant = sampled_plant(pose, sensing)
-    n, k = pose.arm.n, pose.arm.k
-    seen = plant.select(list(range(k + 2 * n)))
-    if sensing.task_every == 1:
-        return SampledLoop(feedback(seen, controller.system, external=k).A, 1)
-    fresh, held = _held(seen, k), _held(seen, k, hold=True)
-    first = feedback(fresh, controller.system, external=k).A
-    then = feedback(held, controller.system, external=k).A
-    return SampledLoop(np.linalg.matrix_power(then, sensing.task_every - 1) @ first, sensing.task_every)
+    plants = plants_in_a_period(pose, controller.sensing)
+    first, *held = (feedback(plant, controller.system, external=pose.arm.k).A for plant in plants[:2])
+    if not held:
+        return SampledLoop(first, 1)
+    return SampledLoop(np.linalg.matrix_power(held[0], len(plants) - 1) @ first, len(plants))
 
 
 def _held(plant: Discrete, k: int, hold: bool = False) -> Discrete:
@@ -70,11 +66,8 @@ def sensitivities(pose: Pose, controller: SampledController) -> tuple[Discrete, 
     """
     sensing = controller.sensing
     n, k = pose.arm.n, pose.arm.k
-    plant = sampled_plant(pose, sensing).select(list(range(k + 2 * n)), list(range(n)))
     used = [i for i in range(k + 2 * n) if _uses(controller.system, i)]
-    plant, system = plant.select(used), controller.system.select(inputs=used)
-    if sensing.task_every > 1:
-        plant = _later(plant, [i for i, channel in enumerate(used) if channel < k], sensing.task_every // 2)
+    plant, system = plant_at_one_rate(pose, sensing).select(used), controller.system.select(inputs=used)
     return _sensitivity(plant, system), _sensitivity(system, plant)
 
 
@@ -87,12 +80,26 @@ def _sensitivity(plant: Discrete, controller: Discrete) -> Discrete:
 
 def loop_gain(pose: Pose, controller: SampledController) -> Discrete:
     """What a torque command becomes once around the loop, n x n: the loop is u = L u."""
-    plant = sampled_plant(pose, controller.sensing)
+    return series(plant_at_one_rate(pose, controller.sensing), controller.system)
+
+
+def plant_at_one_rate(pose: Pose, sensing: Sensing) -> Discrete:
+    """From torque commands (n) to measurements (k + 2n); a slower task sensor is late by its hold's average delay."""
     n, k = pose.arm.n, pose.arm.k
-    plant = plant.select(list(range(k + 2 * n)), list(range(n)))
-    if controller.sensing.task_every > 1:
-        plant = _later(plant, list(range(k)), controller.sensing.task_every // 2)
-    return series(plant, controller.system)
+    plant = sampled_plant(pose, sensing).select(list(range(k + 2 * n)), list(range(n)))
+    return plant if sensing.task_every == 1 else _later(plant, list(range(k)), sensing.task_every // 2)
+
+
+def plants_in_a_period(pose: Pose, sensing: Sensing) -> list[Discrete]:
+    """The plant sample by sample over a period of the task sensor: a fresh value first, then held ones.
+
+    Inputs are torque commands (n) and tip forces (k), outputs measurements (k + 2n).
+    """
+    n, k = pose.arm.n, pose.arm.k
+    seen = sampled_plant(pose, sensing).select(list(range(k + 2 * n)))
+    if sensing.task_every == 1:
+        return [seen]
+    return [_held(seen, k), *[_held(seen, k, hold=True)] * (sensing.task_every - 1)]
 
 
 def tip_stiffness(pose: Pose, controller: SampledController) -> float:

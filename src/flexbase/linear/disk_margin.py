@@ -13,6 +13,8 @@ from flexbase.linear.discrete import Discrete
 POINTS = 160  # frequencies on a logarithmic grid, beside those next to the poles
 AROUND_POLES = np.array([0.9, 0.97, 0.99, 1.0, 1.01, 1.03, 1.1])
 SCALINGS = 12  # rounds of balancing the channels
+ONE_WAY = 1e-12  # a channel that only hears, or only speaks, is scaled as if it did the other by this share
+ROUNDS = 15  # of refining a balance
 
 
 class DiskMargin(NamedTuple):
@@ -63,19 +65,41 @@ def structured_norm(T: np.ndarray) -> Array:
 
     Osborne's balancing, then the better of it and no scaling: an upper bound of mu for independent complex channels.
     """
-    channels = T.shape[-1]
     plain = np.linalg.norm(T, 2, axis=(-2, -1))
-    if channels == 1:
+    if T.shape[-1] == 1:
         return np.asarray(plain)
-    size = np.abs(T) ** 2
-    off = size * (1.0 - np.eye(channels))
+    d = balancing(T)
+    balanced = T * d[..., :, None] / d[..., None, :]
+    return np.asarray(np.minimum(plain, np.linalg.norm(balanced, 2, axis=(-2, -1))))
+
+
+def balancing(T: np.ndarray) -> Array:
+    """Osborne's D, shape (..., channels): rows and columns of D T D^-1 weigh the same off the diagonal."""
+    channels = T.shape[-1]
     d = np.ones(T.shape[:-1])
+    if channels == 1:
+        return d
+    off = np.abs(T) ** 2 * (1.0 - np.eye(channels))
     for _ in range(SCALINGS):
         for i in range(channels):
             row = np.sqrt(np.einsum("...j,...j->...", off[..., i, :], 1.0 / d**2))
             column = np.sqrt(np.einsum("...j,...j->...", off[..., :, i], d**2))
-            d[..., i] = np.sqrt(np.maximum(column, 1e-300) / np.maximum(row, 1e-300))
+            floor = ONE_WAY * np.maximum(row, column) + 1e-300
+            d[..., i] = np.sqrt(np.maximum(column, floor) / np.maximum(row, floor))
         d /= np.exp(np.log(d).mean(axis=-1, keepdims=True))
-    d = np.clip(d, 1e-6, 1e6)
-    balanced = T * d[..., :, None] / d[..., None, :]
-    return np.asarray(np.minimum(plain, np.linalg.norm(balanced, 2, axis=(-2, -1))))
+    return d
+
+
+def tighter(T: np.ndarray, d: Array) -> Array:
+    """Scalings from which |D T D^-1| does not fall much further, from those of `balancing`; a few matrices at a time.
+
+    Where the largest singular value is simple it is least where its left and right vectors weigh each channel alike.
+    """
+    best, least = d, np.linalg.norm(T * d[..., :, None] / d[..., None, :], 2, axis=(-2, -1))
+    for _ in range(ROUNDS):
+        u, s, vh = np.linalg.svd(T * d[..., :, None] / d[..., None, :])
+        better = s[..., 0] < least
+        least, best = np.where(better, s[..., 0], least), np.where(better[..., None], d, best)
+        weight = np.abs(vh[..., 0, :]) + 1e-6, np.abs(u[..., :, 0]) + 1e-6
+        d = d * (weight[0] / weight[1]) ** 0.4
+    return best

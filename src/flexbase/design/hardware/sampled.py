@@ -1,0 +1,242 @@
+"""E designed through the sampled loop itself, with the lags and delays that it will meet.  [theory §10]"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+
+import numpy as np
+
+from flexbase.checks import Array
+from flexbase.control.sampled_controller import (
+    SampledController,
+    acceleration_estimator,
+    pd_with_gain,
+    self_motion_gains,
+)
+from flexbase.control.sampled_loop import plant_at_one_rate, plants_in_a_period
+from flexbase.design.hardware.minimax import Found, Landscape, descend
+from flexbase.design.hardware.registry import hardware_method
+from flexbase.design.implementable import RADIUS
+from flexbase.design.registry import design
+from flexbase.errors import FlexbaseWarning, Infeasible, InputError, MissingExtra
+from flexbase.linear.affine_loop import AffineLoop, Piece
+from flexbase.linear.discrete import Discrete, series, side_by_side, static
+from flexbase.linear.margins import arm_on_free_base
+from flexbase.linear.modal import modes
+from flexbase.model.sensing import Sensing
+from flexbase.model.task import Gains
+from flexbase.plant import Pose
+
+ENOUGH_MARGIN = 0.6  # disk margin beyond which more is not asked for
+SLOW, SLOW_WEIGHT, SLOWEST = 0.05, 0.05, 3.0  # [s]: 0.05 min(tau / 50 ms, 3) is added to the objective
+UNSTABLE = 10.0  # beside the radius: worse than every stable loop
+SHARE = 0.4  # of the ideal design, where the second descent starts
+GUESSES, SPREAD = 2, 0.3  # random starts, and the size of their entries in units of Ms
+FREE = ("E", "stiffness", "damping", "joint-damping")
+HIGHEST = 3.0  # factor on a gain, less one; joint damping in its unit
+JOINT_DAMPING = 100.0  # 1/s: unit of joint damping, times Ms
+
+
+@hardware_method("sampled", "an E made for the sampled loop itself; 4 kHz and more, or soft gains")
+def sampled(
+    pose: Pose,
+    sensing: Sensing,
+    gains: Gains,
+    *,
+    free: Sequence[str] = ("E",),
+    softest: float = 0.3,
+    sensors: bool = True,
+    most: int = 60,
+) -> SampledController:
+    """E, and where asked scales of the gains and joint damping, for the largest disk margin of the sampled loop.
+
+    A redundant arm's self-motion is damped as `pd_with_gain` damps it without E.
+
+    Minimises -min(margin, 0.6) + 0.05 min(tau / 50 ms, 3), tau the slowest time constant; where the loop is unstable,
+    its spectral radius. Descends by sequential linear programmes with exact slopes from no E, from 0.4 times the
+    ideal design and from two random gains (always the same). E is symmetric; nothing else is asked of it: the sampled
+    loop tells whether it can be built.
+
+    free : of "E", "stiffness" and "damping" (a factor on each gain, up to 4), "joint-damping" (a factor on Ms, up to
+        400/s); softest : lowest factor on the stiffness, and its root on the damping
+    sensors : the margin is the smaller of those at torques and sensors; else that at the torques
+    most : looks at the loop in a descent
+    Raises InputError. `notes` has the objective, the looks, and the scales.
+    """
+    problem = SampledProblem(pose, sensing, gains, free, sensors, softest)
+    found = [descend(problem.look, start, most) for start in problem.starts()]
+    best = min(found, key=lambda one: one.value)
+    return problem.controller(best, sum(one.looks for one in found))
+
+
+class SampledProblem:
+    """The loop of a pose with E and scales as unknowns x, all of order one."""
+
+    def __init__(
+        self,
+        pose: Pose,
+        sensing: Sensing,
+        gains: Gains,
+        free: Sequence[str] = ("E",),
+        sensors: bool = True,
+        softest: float = 0.3,
+    ) -> None:
+        for name in free:
+            if name not in FREE:
+                raise InputError(f'free: "{name}" is unknown. Give some of {", ".join(FREE)}.')
+        self.pose, self.sensing, self.gains, self.free, self.sensors = pose, sensing, gains, tuple(free), sensors
+        self.lowest = {"stiffness": softest - 1.0, "damping": softest**0.5 - 1.0, "joint-damping": 0.0}
+        n, k, m = pose.arm.n, pose.arm.k, pose.arm.m
+        self.Ls = np.linalg.cholesky(arm_on_free_base(pose))
+        self.pairs = [(i, j) for i in range(n) for j in range(i, n)] if "E" in free else []
+        Jv = pose.J[:, m:]
+        blank = np.zeros((n, 2 * k + 3 * n))
+        self.proportional, self.rate, self.joints = blank.copy(), blank.copy(), blank.copy()
+        self.proportional[:, :k], self.rate[:, k : 2 * k] = -Jv.T @ gains.stiffness, -Jv.T @ gains.damping
+        self.joints[:, 2 * k : 2 * k + n] = -JOINT_DAMPING * self.Ls @ self.Ls.T
+        self.units = np.array([*map(self._unit, self.pairs), *self._scales()]).reshape(-1, *blank.shape)
+        self.fixed = self.proportional + self.rate
+        if n > k:
+            stiffness, damping = self_motion_gains(pose, None)
+            self.fixed[:, 2 * k : 2 * k + n] -= damping
+            self.fixed[:, 2 * k + n : 2 * k + 2 * n] -= stiffness
+        self.on_joints = n > k or "joint-damping" in free
+        used = [*range(k)]
+        used += [*range(k, k + n)] if self.on_joints or sensing.acceleration != "accelerometer" else []
+        used += [*range(k + n, k + 2 * n)] if sensing.acceleration == "accelerometer" and self.pairs else []
+        plants = [plant.select(inputs=list(range(n))) for plant in plants_in_a_period(pose, sensing)]
+        seen = signals(pose, sensing)
+        self.loop = AffineLoop(plants, plant_at_one_rate(pose, sensing), seen, tuple(used))
+
+    def _unit(self, pair: tuple[int, int]) -> Array:
+        """What one unknown of E adds to Theta: an entry of W in E = Ls W Ls^T."""
+        W = np.zeros_like(self.Ls)
+        W[pair] = W[pair[::-1]] = 1.0
+        unit = np.zeros_like(self.proportional)
+        unit[:, -len(W) :] = self.Ls @ W @ self.Ls.T
+        return unit
+
+    def _scales(self) -> list[Array]:
+        known = {"stiffness": self.proportional, "damping": self.rate, "joint-damping": self.joints}
+        return [unit for name, unit in known.items() if name in self.free]
+
+    def theta(self, x: Array) -> Array:
+        """The constant matrix from signals to torques; x = 0 is the task PD alone."""
+        return self.fixed + np.tensordot(self._bounded(x), self.units, 1)
+
+    def _bounded(self, x: Array) -> Array:
+        """Unknowns of E as they are; the others within their bounds."""
+        count = len(self.pairs)
+        low = [self.lowest[name] for name in FREE[1:] if name in self.free]
+        return np.concatenate([x[:count], np.clip(x[count:], low, HIGHEST)])
+
+    def look(self, x: Array) -> Landscape:
+        """The objective and its slopes at x."""
+        theta = self.theta(x)
+        poles = self.loop.poles(theta)
+        radius = poles[0].value
+        if radius >= 1.0:
+            return Landscape(UNSTABLE + radius, (self._group(poles),))
+        margins = self.loop.margins(theta, self.sensors)
+        tightest = min(min(piece.value for piece in margins), ENOUGH_MARGIN)
+        # -log radius is the decay a sample: its inverse is the time constant, linear where it is largest
+        step = self.sensing.step
+        tau = -step / np.log(radius)
+        slow = [
+            Piece(
+                SLOW_WEIGHT * (-step / np.log(one.value)) / SLOW,
+                SLOW_WEIGHT / SLOW * step / (one.value * np.log(one.value) ** 2) * one.slope,
+            )
+            for one in poles
+            if 0.0 < one.value < 1.0
+        ]
+        flat = Piece(-ENOUGH_MARGIN, np.zeros_like(theta))
+        groups = [self._group([*(Piece(-one.value, -one.slope) for one in margins), flat])]
+        groups.append(
+            self._group(slow)
+            if tau < SLOWEST * SLOW
+            else self._group([Piece(SLOW_WEIGHT * SLOWEST, np.zeros_like(theta))])
+        )
+        return Landscape(-tightest + SLOW_WEIGHT * min(tau / SLOW, SLOWEST), tuple(groups))
+
+    def _group(self, pieces: Sequence[Piece]) -> tuple[Array, Array]:
+        values = np.array([piece.value for piece in pieces])
+        return values, np.array([np.tensordot(self.units, piece.slope, 2) for piece in pieces])
+
+    def starts(self) -> list[Array]:
+        """No E, a share of the ideal design where there is one, and random ones: the landscape has several valleys."""
+        none, count = np.zeros(len(self.units)), len(self.pairs)
+        if not count:
+            return [none]
+        E = ideal_gain(self.pose)
+        W = [] if E is None else [np.linalg.solve(self.Ls, np.linalg.solve(self.Ls, SHARE * E).T)]
+        draw = np.random.default_rng(0)
+        guesses = [np.array([one[pair] for pair in self.pairs]) for one in W]
+        guesses += [SPREAD * draw.standard_normal(count) for _ in range(GUESSES)]
+        return [none, *(np.concatenate([one, none[count:]]) for one in guesses)]
+
+    def controller(self, found: Found, looks: int) -> SampledController:
+        """The controller at x, and notes on how it was found."""
+        x, theta = self._bounded(found.x), self.theta(found.x)
+        names = [name for name in FREE[1:] if name in self.free]
+        values = dict(zip(names, x[len(self.pairs) :].tolist(), strict=True))
+        E = theta[:, -len(self.Ls) :] if self.pairs else None
+        used = Gains(
+            (1.0 + values.get("stiffness", 0.0)) * self.gains.stiffness,
+            (1.0 + values.get("damping", 0.0)) * self.gains.damping,
+        )
+        if self.on_joints:
+            law = series(signals(self.pose, self.sensing), static(theta, self.sensing.step))
+            made = SampledController("sampled", self.pose, self.sensing, law, E)
+        else:
+            made = pd_with_gain(self.pose, self.sensing, used, E, "sampled")
+        made.notes.update(
+            objective=found.value,
+            looks=looks,
+            stiffness_scale=float(1.0 + values.get("stiffness", 0.0)),
+            damping_scale=float(1.0 + values.get("damping", 0.0)),
+            joint_damping=float(JOINT_DAMPING * values.get("joint-damping", 0.0)),
+        )
+        return made
+
+
+def signals(pose: Pose, sensing: Sensing) -> Discrete:
+    """From tip error, joints and accelerations to (e, de, dq, q, a), each difference over its own interval."""
+    n, k = pose.arm.n, pose.arm.k
+    step, every = sensing.step, sensing.task_every
+    size = k * every
+    rate = 1.0 / (every * step)
+    last = np.hstack([np.zeros((k, size - k)), np.eye(k)])
+    tip = Discrete(
+        np.eye(size, k=-k),
+        np.eye(size, k),
+        np.vstack([np.zeros((k, size)), -rate * last]),
+        np.vstack([np.eye(k), rate * np.eye(k)]),
+        step,
+    )
+    direct = np.vstack([np.eye(n) / step, np.eye(n)])
+    joints = Discrete(np.zeros((n, n)), np.eye(n), np.vstack([-np.eye(n) / step, np.zeros((n, n))]), direct, step)
+    if sensing.acceleration == "accelerometer":
+        return side_by_side(tip, joints, static(np.eye(n), step))
+    split = static(np.vstack([np.eye(n), np.eye(n)]), step)
+    from_encoders = series(split, side_by_side(joints, acceleration_estimator(n, sensing)))
+    unused = static(np.zeros((0, n)), step)
+    return side_by_side(tip, from_encoders, unused)
+
+
+def ideal_gain(pose: Pose) -> Array | None:
+    """The implementable design for ideal acceleration that suits the base; None where there is none."""
+    if pose.arm.m == 0:
+        return None
+    tries: list[tuple[str, dict[str, float]]] = [("bounded", {}), ("convex", {"radius": RADIUS})]
+    if pose.arm.m == 1 and pose.arm.k == pose.arm.n:
+        tries.insert(0, ("exact", {"natural_frequency": modes(pose)[0].frequency + 100.0}))
+    for method, options in tries:
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", FlexbaseWarning)  # a start: what comes of it is judged by itself
+                return design(pose, method=method, **options).E
+        except (Infeasible, InputError, MissingExtra):
+            continue
+    return None
