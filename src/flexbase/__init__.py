@@ -22,7 +22,7 @@ from flexbase.measures import MEASURES
 from flexbase.measures.manipulability import Ellipsoid, Manipulability, manipulability
 from flexbase.model.task import Gains
 from flexbase.plant import Plant, Pose, load
-from flexbase.simulate import Run, simulate
+from flexbase.simulate import Run, Runs, simulate, simulate_many
 from flexbase.simulate.mjcf import to_mjcf
 from flexbase.study.layout import Layout, best_layout
 from flexbase.study.montecarlo import Criterion, Fixed, Lognormal, Normal, Probability, Uniform, montecarlo
@@ -61,6 +61,7 @@ __all__ = [
     "RobustCurves",
     "RobustPoints",
     "Run",
+    "Runs",
     "SecondOrder",
     "SingularArm",
     "Uniform",
@@ -83,6 +84,7 @@ __all__ = [
     "robust_curves",
     "robust_points",
     "simulate",
+    "simulate_many",
     "summary",
     "sweep",
     "to_mjcf",

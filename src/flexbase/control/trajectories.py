@@ -35,6 +35,7 @@ def trapezoidal(u: Scalar) -> tuple[Scalar, Scalar, Scalar]:
 
 
 LAWS: dict[str, Law] = {"quintic": quintic, "trapezoidal": trapezoidal}
+SMOOTH_PARTS = {"quintic": 1, "trapezoidal": 3}  # equal parts of 0 <= u <= 1 within which a law is smooth
 
 
 @dataclass(frozen=True, eq=False)
