@@ -10,6 +10,8 @@ from flexbase.cli.digits import listed, matrix, number
 from flexbase.cli.show import facts, table, title, verdict
 from flexbase.control.compensator import Compensator
 
+IDEAL = "Continuous time, ideal acceleration."
+
 
 def tables(found: Compensator, inertia_unit: str) -> list[RenderableType]:
     """Heading, E, the modes before and after, the margins, and whether the task-space loop settles."""
@@ -44,7 +46,7 @@ def tables(found: Compensator, inertia_unit: str) -> list[RenderableType]:
     return [
         *said,
         "",
-        verdict(loop < 0.0, "The task-space loop is stable here", "The task-space loop is unstable here"),
+        verdict(loop < 0.0, "The task-space loop is stable here", "The task-space loop is unstable here", IDEAL),
     ]
 
 

@@ -6,6 +6,7 @@ from typing import Annotated
 
 from cyclopts import App, Parameter
 
+from flexbase.cli import as_it_runs as hardware
 from flexbase.cli import units
 from flexbase.cli.certificate import tables
 from flexbase.cli.document import document
@@ -14,10 +15,12 @@ from flexbase.cli.method import MethodOptions
 from flexbase.cli.options import Json
 from flexbase.cli.out import PICTURES, OutFile, check_out, written
 from flexbase.cli.pose import PoseOptions, Robot
+from flexbase.cli.sensing import SensingOptions
 from flexbase.cli.show import put
 from flexbase.design import design as design_at
 from flexbase.errors import Infeasible
 from flexbase.plant import load
+from flexbase.study.as_it_runs import as_it_runs
 
 app = App(
     name="design",
@@ -40,16 +43,18 @@ def design(
     pose: PoseOptions = PoseOptions(),  # noqa: B008
     by: MethodOptions = MethodOptions(),  # noqa: B008
     loop: GainOptions = GainOptions(),  # noqa: B008
+    run: SensingOptions = SensingOptions(),  # noqa: B008
     out: Out = None,
     json: Json = False,
 ) -> int:
-    """Design E of tau = tau~ + E q'' at a pose, with the certificate of what it does."""
+    """Design E of tau = tau~ + E q'' at a pose: what it does by its certificate, and whether it would run."""
     is_picture = out is not None and out.suffix.lower() in PICTURES
     check_out(out, (".json",) if is_picture else ())  # it is JSON whatever its name
     plant = load(robot)
-    gains = loop.gains(plant)
+    gains, sensing = loop.gains(plant), run.sensing(plant) if run.declared(plant) else None
     try:
-        found = design_at(pose.pose(plant), by.method, **by.given(plant), **({} if gains is None else {"gains": gains}))
+        at = pose.pose(plant)
+        found = design_at(at, by.method, **by.given(plant), **({} if gains is None else {"gains": gains}))
     except Infeasible as reason:
         if not json:
             raise
@@ -58,7 +63,8 @@ def design(
     kinds = ["rad" if kind == "revolute" else "m" for kind in plant.arm.mechanism.joint_types[plant.arm.m :]]
     if out is not None:
         found.save(out)
-    put(document("design", found.to_dict())) if json else put(
-        *tables(found, units.common("inertia", kinds)), *written(out)
+    real = as_it_runs(at, found, sensing, gains)
+    put(document("design", {**found.to_dict(), **hardware.content(real)})) if json else put(
+        *tables(found, units.common("inertia", kinds)), *hardware.lines(real), *written(out)
     )
     return 0
