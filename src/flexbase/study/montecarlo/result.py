@@ -80,7 +80,7 @@ class Probability:
         parts = (self.dataset[name].values for name in ("probability", "lower", "upper"))
         cells = self.cells
         with np.errstate(invalid="ignore"):
-            counts = [np.count_nonzero(part >= level) for part in parts]
+            counts = [int(np.count_nonzero(part >= level)) for part in parts]
         return Estimate(*(count / cells if cells else float("nan") for count in counts))
 
     def to_dict(self) -> dict[str, Any]:
