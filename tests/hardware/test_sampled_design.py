@@ -14,7 +14,7 @@ from flexbase.control.sampled_controller import SampledController
 from flexbase.control.sampled_loop import close_loop, sensitivities
 from flexbase.design.hardware import controller_for
 from flexbase.design.hardware.minimax import Landscape, descend
-from flexbase.design.hardware.sampled import FREE, SampledProblem, signals
+from flexbase.design.hardware.sampled import SCALES, SampledProblem, signals
 from flexbase.errors import InputError
 from flexbase.linear.discrete import series, static
 from flexbase.linear.disk_margin import disk_margin
@@ -22,6 +22,7 @@ from flexbase.model.sensing import Sensing
 from flexbase.study.workspace import random_poses
 
 FAST = Sensing(rate=4000.0)
+ALL_BUT_MATRICES = ("E", *SCALES)
 CASES = {
     "accelerometer": FAST,
     "encoders": replace(FAST, acceleration="encoders"),
@@ -34,7 +35,7 @@ X = np.array([-0.03, -0.22, -0.08, 0.1, -0.1, 0.2])
 
 def problem(pose: fb.Pose, sensing: Sensing) -> SampledProblem:
     assert pose.arm.gains is not None
-    return SampledProblem(pose, sensing, pose.arm.gains, FREE)
+    return SampledProblem(pose, sensing, pose.arm.gains, ALL_BUT_MATRICES)
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -128,7 +129,7 @@ def test_runs_where_the_ideal_designs_do_not(acceleration: str, paper_pose: fb.P
 
 
 def test_free_gains_keep_their_bounds(paper_pose: fb.Pose) -> None:
-    controller = controller_for(paper_pose, "sampled", Sensing(), free=FREE, softest=0.5)
+    controller = controller_for(paper_pose, "sampled", Sensing(), free=ALL_BUT_MATRICES, softest=0.5)
     verdict = hardware_verdict(controller, changes=())
     assert verdict.stable
     assert controller.notes["stiffness_scale"] >= 0.5
@@ -150,3 +151,27 @@ def test_several_base_joints() -> None:
     assert close_loop(pose, alone).radius > 1.1
     assert close_loop(pose, made).radius < 1.0
     assert min(disk_margin(side).alpha for side in sensitivities(pose, made)) > 0.03
+
+
+def test_constant_gains_hold_the_arm_at_one_kilohertz(paper_pose: fb.Pose) -> None:
+    """Encoders alone, one sample of delay: no E is unstable, and constant matrices have margin on both sides."""
+    sensing = Sensing(acceleration="encoders")
+    controller = controller_for(paper_pose, "constant", sensing)
+    verdict = hardware_verdict(controller)
+    assert verdict.stable
+    assert verdict.survives
+    assert verdict.has_margin
+    assert controller.notes["accepted"]
+    assert verdict.tip_stiffness == pytest.approx(1e5 * controller.notes["scale"], rel=1e-6)
+    assert controller.notes["scale"] >= 0.25
+    assert not hardware_verdict(controller_for(paper_pose, "none", sensing), changes=()).stable
+
+
+def test_slopes_by_single_entries(paper_pose: fb.Pose) -> None:
+    """Radius by every unknown of the full problem, to 1e-4."""
+    here = SampledProblem(paper_pose, Sensing(), paper_pose.arm.gains, ("E", *SCALES, "matrices"))  # type: ignore[arg-type]
+    x = 0.1 * np.random.default_rng(2).standard_normal(len(here.units))
+    slopes = np.tensordot(here.units, here.loop.poles(here.theta(x))[0].slope, 2)
+    for i, step in enumerate(1e-6 * np.eye(len(x))):
+        ahead, back = (here.loop.poles(here.theta(x + sign * step))[0].value for sign in (1.0, -1.0))
+        assert (ahead - back) / 2e-6 == pytest.approx(slopes[i], rel=1e-3, abs=1e-6)

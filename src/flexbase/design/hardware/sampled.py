@@ -33,7 +33,9 @@ SLOW, SLOW_WEIGHT, SLOWEST = 0.05, 0.05, 3.0  # [s]: 0.05 min(tau / 50 ms, 3) is
 UNSTABLE = 10.0  # beside the radius: worse than every stable loop
 SHARE = 0.4  # of the ideal design, where the second descent starts
 GUESSES, SPREAD = 2, 0.3  # random starts, and the size of their entries in units of Ms
-FREE = ("E", "stiffness", "damping", "joint-damping")
+SCALES = ("stiffness", "damping", "joint-damping")
+MATRICES = "matrices"
+FREE = ("E", *SCALES, MATRICES)
 HIGHEST = 3.0  # factor on a gain, less one; joint damping in its unit
 JOINT_DAMPING = 100.0  # 1/s: unit of joint damping, times Ms
 
@@ -59,7 +61,8 @@ def sampled(
     loop tells whether it can be built.
 
     free : of "E", "stiffness" and "damping" (a factor on each gain, up to 4), "joint-damping" (a factor on Ms, up to
-        400/s); softest : lowest factor on the stiffness, and its root on the damping
+        400/s), "matrices" (every entry of the gains on tip rate, joint rate and acceleration)
+    softest : lowest factor on the stiffness, and its root on the damping
     sensors : the margin is the smaller of those at torques and sensors; else that at the torques
     most : looks at the loop in a descent
     Raises InputError. `notes` has the objective, the looks, and the scales.
@@ -101,10 +104,11 @@ class SampledProblem:
             stiffness, damping = self_motion_gains(pose, None)
             self.fixed[:, 2 * k : 2 * k + n] -= damping
             self.fixed[:, 2 * k + n : 2 * k + 2 * n] -= stiffness
-        self.on_joints = n > k or "joint-damping" in free
+        self.on_joints = n > k or "joint-damping" in free or MATRICES in free
         used = [*range(k)]
         used += [*range(k, k + n)] if self.on_joints or sensing.acceleration != "accelerometer" else []
-        used += [*range(k + n, k + 2 * n)] if sensing.acceleration == "accelerometer" and self.pairs else []
+        felt = bool(self.pairs) or MATRICES in free
+        used += [*range(k + n, k + 2 * n)] if sensing.acceleration == "accelerometer" and felt else []
         plants = [plant.select(inputs=list(range(n))) for plant in plants_in_a_period(pose, sensing)]
         seen = signals(pose, sensing)
         self.loop = AffineLoop(plants, plant_at_one_rate(pose, sensing), seen, tuple(used))
@@ -119,17 +123,33 @@ class SampledProblem:
 
     def _scales(self) -> list[Array]:
         known = {"stiffness": self.proportional, "damping": self.rate, "joint-damping": self.joints}
-        return [unit for name, unit in known.items() if name in self.free]
+        scales = [unit for name, unit in known.items() if name in self.free]
+        return scales if MATRICES not in self.free else [*scales, *self._entries()]
+
+    def _entries(self) -> list[Array]:
+        """Single entries of the gains on tip rate, joint rate and acceleration, each in the unit of its kind."""
+        k, n = self.pose.arm.k, len(self.Ls)
+        Lk = np.linalg.cholesky(self.gains.damping + 1e-9 * np.trace(self.gains.damping) * np.eye(k))
+        pull, Ls = -self.pose.J[:, self.pose.arm.m :].T @ Lk, self.Ls
+        sides = [(k, pull, Lk.T), (2 * k, -JOINT_DAMPING * Ls, Ls.T), (2 * k + 2 * n, Ls, Ls.T)]
+        found = []
+        for first, left, right in sides:
+            for i, j in np.ndindex(left.shape[1], right.shape[0]):
+                unit = np.zeros_like(self.proportional)
+                unit[:, first : first + right.shape[1]] = np.outer(left[:, i], right[j])
+                found.append(unit)
+        return found
 
     def theta(self, x: Array) -> Array:
         """The constant matrix from signals to torques; x = 0 is the task PD alone."""
         return self.fixed + np.tensordot(self._bounded(x), self.units, 1)
 
     def _bounded(self, x: Array) -> Array:
-        """Unknowns of E as they are; the others within their bounds."""
+        """Scales within their bounds, all else as it is."""
         count = len(self.pairs)
-        low = [self.lowest[name] for name in FREE[1:] if name in self.free]
-        return np.concatenate([x[:count], np.clip(x[count:], low, HIGHEST)])
+        names = [name for name in SCALES if name in self.free]
+        scales = np.clip(x[count : count + len(names)], [self.lowest[name] for name in names], HIGHEST)
+        return np.concatenate([x[:count], scales, x[count + len(names) :]])
 
     def look(self, x: Array) -> Landscape:
         """The objective and its slopes at x."""
@@ -179,9 +199,9 @@ class SampledProblem:
     def controller(self, found: Found, looks: int) -> SampledController:
         """The controller at x, and notes on how it was found."""
         x, theta = self._bounded(found.x), self.theta(found.x)
-        names = [name for name in FREE[1:] if name in self.free]
-        values = dict(zip(names, x[len(self.pairs) :].tolist(), strict=True))
-        E = theta[:, -len(self.Ls) :] if self.pairs else None
+        names, count = [name for name in SCALES if name in self.free], len(self.pairs)
+        values = dict(zip(names, x[count : count + len(names)].tolist(), strict=True))
+        E = theta[:, -len(self.Ls) :] if self.pairs or MATRICES in self.free else None
         used = Gains(
             (1.0 + values.get("stiffness", 0.0)) * self.gains.stiffness,
             (1.0 + values.get("damping", 0.0)) * self.gains.damping,
