@@ -57,6 +57,9 @@ SHOWN = {
     "montecarlo": "--tip --joints --elbow --branch --over --shape --bounds --axes --hold --vary --criterion --criteria "
     "--samples --seed --sampling --compensator --redesign --engine --out --json",
     "draw": "--before --at --out",
+    "posture": "--tip --elbow --branch --measure --compensator --out --json",
+    "rac": "--axes --hold --modes --count --compensator --out --json",
+    "layout": "--targets --measure --goal --along --turn --within --elbow --branch --compensator --out --json",
     "reproduce": "--out --json",
     "robots": "--json",
     "init": "--schema",
