@@ -55,13 +55,11 @@ def verdict(
 
 def _tables(found: Verdict, compensated: bool) -> list[RenderableType]:
     assert found.pose is not None
-    rows: list[tuple[str, object]] = [
-        ("shortage", f"{number(found.shortage)} m/(N s)"),
-        ("of the largest response", f"{number(100.0 * found.relative_shortage, 6)} %"),
-    ]
-    if not found.positive_real:
+    rows: list[tuple[str, object]] = [("shortage", found.in_words())]
+    if found.half_at:
         rows.append(("worst at", f"{number(found.worst_at, 6)} rad/s"))
         rows.append(("half of it", found.half_in_words()))
+    if found.fails_at:
         rows.append(("fails", found.failing_in_words()))
     index = "open" if found.output_index is None else number(found.output_index, 6)
     if found.output_index == -inf:

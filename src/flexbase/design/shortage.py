@@ -8,17 +8,17 @@ import numpy as np
 import scipy.linalg
 
 from flexbase.checks import Array
-from flexbase.linear.linearise import reduced_arrays
-from flexbase.linear.quadratic_eigenproblem import damped_poles
+from flexbase.linear.linearise import Gain, reduced_arrays
+from flexbase.linear.passivity_index import input_index, largest_gain
+from flexbase.linear.port import compressed
 from flexbase.linear.reduced import robustness
+from flexbase.linear.vibration import base_vibration
 from flexbase.plant import Pose
 
 LOST = 1e-10  # of a and b, the size of the smaller one below which it is rounding
 UNDAMPED = 1e-4  # damping ratio below which a base counts as undamped
 ASSUMED = 0.01  # damping ratio of the slowest mode, proportional to stiffness, that an undamped base is given instead
-WIDTHS = np.concatenate([-np.geomspace(30.0, 0.03, 40), [0.0], np.geomspace(0.03, 30.0, 40)])  # around a resonance
-POSITIVE_REAL = 1e-6  # relative shortage up to which a gain counts as positive real: the sweep's own accuracy
-SPAN = np.geomspace(1e-2, 1e2, 401)  # of the frequencies of the base
+POSITIVE_REAL = 1e-6  # relative shortage up to which a gain counts as positive real: the accuracy of a descent
 
 
 class ModalShortage(NamedTuple):
@@ -77,23 +77,14 @@ def _turns(squares: Array, i: int) -> Array:
 
 
 def relative_shortage(pose: Pose, E: Array) -> float:
-    """max(0, -min over omega of lambda_min of the Hermitian part of G - R0/s) over the largest |G - R0/s|.  [theory §5]
+    """max(0, -inf over omega of lambda_min of the Hermitian part of G - R0/s) over the largest |G - R0/s|.  [theory §5]
 
-    By a dense sweep of the whole response, so true at any damping to about 1e-3 of itself; 0 where it is positive real.
-    Assumes M - E > 0; leaves gravity stiffness of the arm out; an undamped base is given `working_damping`.
+    Exact, by the whole response, at any damping; 0 where it is positive real. Assumes M - E > 0; leaves gravity
+    stiffness and friction of the arm out; an undamped base is given `working_damping`.
     """
-    reduced, damping, stiffness = reduced_arrays(pose, E), working_damping(pose), pose.arm.base.stiffness
-    poles = [pole.value for pole in damped_poles(reduced.S, damping, stiffness)]
-    omega = np.concatenate([abs(pole) + WIDTHS * abs(pole.real) for pole in poles])
-    ends = abs(poles[0]), abs(poles[-1])
-    omega = np.concatenate([omega[omega > 0.0], SPAN * np.sqrt(ends[0] * ends[1]), [1e-3 * ends[0], 1e3 * ends[1]]])
-    s = 1j * omega[:, None, None]
-    response = -s * (reduced.U @ np.linalg.solve(s * s * reduced.S + s * damping + stiffness, reduced.V.T + 0j))
-    largest = float(np.linalg.norm(response, ord=2, axis=(1, 2)).max())
-    if min(lengths := [np.linalg.norm(reduced.U), np.linalg.norm(reduced.V)]) <= LOST * max(lengths):
-        return 0.0
-    least = float(np.linalg.eigvalsh(0.5 * (response + np.conj(np.swapaxes(response, 1, 2))))[:, 0].min())
-    return max(0.0, -least) / largest
+    port = compressed(base_vibration(pose, Gain(E), working_damping(pose)).force_to_velocity())
+    gain = largest_gain(port).value
+    return max(0.0, -input_index(port, gain).value / gain) if gain > 0.0 else 0.0
 
 
 def target_residual(pose: Pose, E: Array) -> float:

@@ -1,4 +1,4 @@
-"""What can be said for certain about a gain: aligned by one beta, by one a mode, or what the sweep shows.  [theory §7]
+"""What can be said for certain about a gain: aligned by one beta, by one a mode, or by the whole response.  [theory §7]
 
 With U = (1 - beta_i) Jp and V = beta_i Jp on each undamped mode phi_i, G - R0/s is congruent to the inverse of
 s S C + Dp C + Kp C / s with C = Phi diag(c) Phi^-1, c_i = beta_i / (beta_i - 1). S C and Kp C are symmetric, so only
@@ -36,7 +36,7 @@ def statement(pose: Pose, E: Array) -> str:
             return f"positive real with this damping of the base: each mode aligned, beta = {own}{scope}"
     missing = relative_shortage(pose, E)
     if missing <= POSITIVE_REAL:
-        return f"positive real as far as a frequency sweep shows{scope}"
+        return f"positive real with this damping of the base, by its whole response{scope}"
     return f"not positive real: passivity lacks {100.0 * missing:.2g} % of the largest response{scope}"
 
 

@@ -35,12 +35,13 @@ def verdict(model: Pose | SecondOrder, compensator: HasGain | None = None, bandw
     if isinstance(model, SecondOrder):
         if compensator is not None:
             raise InputError("compensator: given with a system. Take E from its M, or give a pose.")
-        return _judged(None, vibration_of_system(_checked(model)), band, ())
+        return _judged(None, vibration_of_system(_checked(model)), band)
     check_pose(model)
-    return _judged(model, vibration_of(model, compensator), band, _cautions(model, compensator, band))
+    alone = None if is_reducible(model) else _judged(None, base_vibration(model, compensator), band)
+    return _judged(model, vibration_of(model, compensator), band, alone)
 
 
-def _judged(pose: Pose | None, vibration: Vibration, band: Interval, cautions: tuple[str, ...]) -> Verdict:
+def _judged(pose: Pose | None, vibration: Vibration, band: Interval, alone: Verdict | None = None) -> Verdict:
     whole = vibration.force_to_velocity()
     port = compressed(whole)
     gain = largest_gain(port, band)
@@ -58,7 +59,7 @@ def _judged(pose: Pose | None, vibration: Vibration, band: Interval, cautions: t
     else:
         at = worst.at
     positive = not unbounded and relative >= -POSITIVE_REAL
-    cautions = (*_hidden(port, gain.at, band), *cautions) if positive else cautions
+    cautions = (*(_hidden(port, gain.at, band) if positive else ()), *_cautions(pose, alone))
     searched = (gain, worst, *(() if other is None else (other,)))
     return Verdict(
         pose=pose,
@@ -80,6 +81,7 @@ def _judged(pose: Pose | None, vibration: Vibration, band: Interval, cautions: t
         undamped=tuple(mode.frequency for mode in vibration.undamped),
         bandwidth=None if np.isinf(band[1]) else band[1],
         caveats=(*_caveats(vibration, bad, rigid_fails, all(one.settled for one in searched)), *cautions),
+        base_alone=alone,
         port=port,
     )
 
@@ -143,21 +145,15 @@ def _caveats(vibration: Vibration, bad: list[UndampedMode], rigid_fails: bool, s
     return tuple(said)
 
 
-def _cautions(pose: Pose, compensator: HasGain | None, band: Interval) -> tuple[str, ...]:
+def _cautions(pose: Pose | None, alone: Verdict | None) -> tuple[str, ...]:
     """What a pose's verdict counts and leaves out; beside gravity and friction of the arm, the base by itself."""
     said = []
-    if not is_reducible(pose):
-        alone = _judged(None, base_vibration(pose, compensator), band, ())
-        answer = "positive real"
-        if not alone.positive_real:
-            answer = (
-                f"not positive real, shortage {alone.shortage:.6g} m/(N s), {100.0 * alone.relative_shortage:.4g} %"
-            )
+    if alone is not None:
+        answer = "positive real" if alone.positive_real else f"not positive real, shortage {alone.in_words()}"
         said.append(
-            "Gravity stiffness and joint friction are counted; with the springs and dampers of the base alone: "
-            f"{answer}."
+            f"Gravity stiffness and joint friction are counted; with springs and dampers of the base alone: {answer}."
         )
-    if pose.arm.n > pose.arm.k:
+    if pose is not None and pose.arm.n > pose.arm.k:
         said.append("Redundant arm: this is the port of the task alone; what drives the self-motion is coupled to it.")
     return tuple(said)
 

@@ -40,6 +40,8 @@ class Verdict:
     rigid_mode : R0, shape (k, k)
     undamped : frequencies of vibrations without damping [rad/s]
     caveats : plain words
+    base_alone : the verdict with the springs and dampers of the base alone, where gravity's stiffness or joint friction
+        are counted; else None
     port : F without directions that have no response
     """
 
@@ -62,12 +64,19 @@ class Verdict:
     undamped: tuple[float, ...]
     bandwidth: float | None
     caveats: tuple[str, ...]
+    base_alone: Verdict | None
     port: Port = field(repr=False)
 
     @property
     def name(self) -> str:
         """The plant's name."""
         return "system" if self.pose is None else self.pose.plant.name
+
+    def in_words(self) -> str:
+        """The shortage as people read it."""
+        if not np.isfinite(self.shortage):
+            return "without bound"
+        return f"{self.shortage + 0.0:.9g} m/(N s), {100.0 * self.relative_shortage + 0.0:.6g} % of the largest gain"
 
     def failing_in_words(self) -> str:
         """`fails_at` as people read it; without the ends where it is only too small for the tolerance."""
@@ -95,13 +104,8 @@ class Verdict:
         place = {} if self.pose is None else {"q": self.pose.q.tolist(), "tip": self.pose.tip.tolist()}
         return {
             **place,
-            "positive_real": self.positive_real,
-            "shortage": self.shortage,
-            "relative_shortage": self.relative_shortage,
-            "negative_imaginary": self.negative_imaginary,
+            **self._answer(),
             "negative_imaginary_relative_shortage": self.negative_imaginary_shortage,
-            "worst_at_rad_s": self.worst_at,
-            "fails_at_rad_s": [list(interval) for interval in self.fails_at],
             "half_at_rad_s": [list(interval) for interval in self.half_at],
             "input_index": self.input_index,
             "output_index": self.output_index,
@@ -113,6 +117,17 @@ class Verdict:
             "undamped_rad_s": list(self.undamped),
             "bandwidth_rad_s": self.bandwidth,
             "caveats": list(self.caveats),
+            "base_alone": None if self.base_alone is None else self.base_alone._answer(),
+        }
+
+    def _answer(self) -> dict[str, Any]:
+        return {
+            "positive_real": self.positive_real,
+            "shortage": self.shortage,
+            "relative_shortage": self.relative_shortage,
+            "negative_imaginary": self.negative_imaginary,
+            "worst_at_rad_s": self.worst_at,
+            "fails_at_rad_s": [list(interval) for interval in self.fails_at],
         }
 
     def summary(self) -> str:
@@ -121,7 +136,7 @@ class Verdict:
         scope = "" if self.bandwidth is None else f" up to {self.bandwidth:.6g} rad/s"
         lines = [
             f"{self.name}{where}: {'' if self.positive_real else 'not '}positive real{scope}",
-            f"  shortage {self.shortage:.9g} m/(N s), {100.0 * self.relative_shortage:.5g} % of the largest response",
+            f"  shortage {self.in_words()}",
             *([] if self.worst_at is None else [f"  worst at {self.worst_at:.6g} rad/s"]),
             *([] if not self.fails_at else [f"  fails {self.failing_in_words()}"]),
             *([] if not self.half_at else [f"  half of it {self.half_in_words()}"]),

@@ -109,14 +109,18 @@ def vibration_of(pose: Pose, compensator: HasGain | None = None) -> Vibration:
     return vibration_of_system(linearise(pose, compensator))
 
 
-def base_vibration(pose: Pose, compensator: HasGain | None = None) -> Vibration:
-    """The same with the stiffness and damping of the base alone, by the reduced form.  [theory §3]"""
+def base_vibration(pose: Pose, compensator: HasGain | None = None, damping: Array | None = None) -> Vibration:
+    """The same with the stiffness and damping of the base alone, by the reduced form.  [theory §3]
+
+    damping : instead of the base's own, shape (m, m)
+    """
     E, m, base = gain_of(pose, compensator), pose.arm.m, pose.arm.base
     check_definite_inertia(pose, E)
     reduced = reduced_arrays(pose, E)
     carried = np.abs(pose.J[:, m:]) @ np.abs(reduced.W)
     terms = np.abs(pose.J[:, :m]) + carried, carried.T
-    found = take_apart(reduced.S, base.damping, base.stiffness, -reduced.V.T, reduced.U, terms)
+    own = base.damping if damping is None else damping
+    found = take_apart(reduced.S, own, base.stiffness, -reduced.V.T, reduced.U, terms)
     return found._replace(rigid=found.rigid + reduced.R0)
 
 
