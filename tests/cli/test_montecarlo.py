@@ -84,3 +84,13 @@ def test_wrong_words_are_named(call: Call, words: tuple[str, ...], said: str) ->
     assert (outcome.status, outcome.out) == (2, "")
     assert outcome.err.startswith("error: ")
     assert said in outcome.err
+
+
+def test_draw_reads_what_was_kept(call: Call, tmp_path: Path) -> None:
+    assert call(*MAP, "--out", tmp_path / "m.nc").status == 0
+    shown = call("draw", tmp_path / "m.nc", "--out", tmp_path / "m.png")
+    assert (shown.status, shown.err) == (0, "")
+    assert "probability that it holds" in shown.out
+    assert (tmp_path / "m.png").read_bytes().startswith(b"\x89PNG")
+    refused = call("draw", tmp_path / "m.nc", "--before", tmp_path / "m.nc", "--out", tmp_path / "d.png")
+    assert refused.status == 2

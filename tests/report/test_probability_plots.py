@@ -63,3 +63,14 @@ def test_one_axis_is_a_curve_and_three_are_refused(paper):
     )
     with pytest.raises(fb.InputError, match="this study has 3 axes"):
         fb.plot(three)
+
+
+def test_a_study_that_was_kept_is_drawn_again(paper, tmp_path):
+    found = fb.montecarlo(paper, VARY, redesign=True, shape=(12, 10), samples=30)
+    found.save_netcdf(tmp_path / "m.nc")
+    kept = fb.open_dataset(tmp_path / "m.nc")
+    for name in ("a", "b"):
+        save_plot(found if name == "a" else kept, tmp_path / f"{name}.png")
+    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
+    with pytest.raises(fb.InputError, match=r"pictures are written as \.png"):
+        save_plot(kept, tmp_path / "m.html")

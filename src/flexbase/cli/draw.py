@@ -12,6 +12,7 @@ from flexbase.cli.out import PICTURES, OutFile, check_out, write_out, written
 from flexbase.cli.show import put, title
 from flexbase.cli.words import names, number
 from flexbase.errors import InputError, nearest_name
+from flexbase.study.montecarlo import is_study
 from flexbase.sweep import difference, open_dataset
 from flexbase.sweep.chart import chart_of, thinned
 
@@ -36,7 +37,7 @@ def _values(text: str, given: str) -> Values:
 
 @app.default
 def draw(
-    sweep: Annotated[Path, Parameter(help="a .zarr store or .nc file that map wrote")],
+    sweep: Annotated[Path, Parameter(help="a .zarr store that map wrote, or a .nc file")],
     /,
     *,
     before: Annotated[
@@ -53,6 +54,8 @@ def draw(
     if before is not None:
         found = difference(*(thinned(one) for one in (_chosen(open_dataset(before), at), found)))
     write_out(out, "draw", found, {})
+    if is_study(found):
+        return put(title(found.attrs["robot"], f"{found.attrs['design']}, probability that it holds"), *written(out))
     chart = chart_of(found)
     axes = ", ".join(axis.name for axis in chart.drawn or chart.axes)
     put(title(chart.heading, f"{', '.join(layer.title for layer in chart.layers)} over {axes}"), *written(out))

@@ -30,7 +30,7 @@ from flexbase.report.save import check_picture_path, save_figure
 from flexbase.report.style import styled
 from flexbase.simulate import Run
 from flexbase.study.layout import Layout
-from flexbase.study.montecarlo import Probability
+from flexbase.study.montecarlo import Probability, is_study
 from flexbase.study.posture import Postures
 from flexbase.study.robust_curves import RobustCurves
 from flexbase.study.robust_points import RobustPoints
@@ -41,14 +41,14 @@ PAGE = ".html"
 
 @singledispatch
 def plot(result: object) -> Figure:
-    """A figure of a result: any of the types registered below, or the `Dataset` of a sweep.
+    """A figure of a result: any of the types registered below, or the `Dataset` of a sweep or study.
 
     A sweep may have one to three axes: curves, maps, slices. The figure belongs to no window: save it with `save_plot`,
     or show it in a notebook.
     Raises InputError for anything else.
     """
     if _is_dataset(result):
-        return styled()(draw_dataset)(result)
+        return plot(Probability(result)) if is_study(result) else styled()(draw_dataset)(result)
     drawable = ", ".join(kind.__name__ for kind in plot.registry if kind is not object)
     raise InputError(f"plot: a {type(result).__name__} cannot be drawn. Give one of {drawable}.")
 
@@ -72,7 +72,7 @@ def save_plot(result: object, path: str | Path) -> None:
     Raises InputError for a result that cannot be drawn, another suffix, or a place that cannot be written; MissingExtra
     for a page without plotly.
     """
-    if Path(path).suffix.lower() == PAGE and (isinstance(result, Chart) or _is_dataset(result)):
+    if Path(path).suffix.lower() == PAGE and (isinstance(result, Chart) or _is_sweep(result)):
         from flexbase.report.page.write import save_page
 
         return save_page(result, path)
@@ -80,6 +80,10 @@ def save_plot(result: object, path: str | Path) -> None:
     save_figure(plot(result), path)
 
 
+def _is_sweep(result: object) -> bool:
+    return _is_dataset(result) and not is_study(result)
+
+
 def _is_dataset(result: object) -> bool:
-    """Whether it is a sweep; xarray itself takes long to import."""
+    """Whether it is a sweep or a study; xarray itself takes long to import."""
     return type(result).__module__.startswith("xarray")

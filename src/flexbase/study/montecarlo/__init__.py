@@ -3,7 +3,7 @@
 from flexbase.study.montecarlo.criterion import CRITERIA, Criterion
 from flexbase.study.montecarlo.distribution import DISTRIBUTIONS, Fixed, Lognormal, Normal, Uniform
 from flexbase.study.montecarlo.interval import Estimate
-from flexbase.study.montecarlo.result import LEVELS, Probability, shown
+from flexbase.study.montecarlo.result import LEVELS, Probability, is_study, shown
 from flexbase.study.montecarlo.run import montecarlo
 
 __all__ = [
@@ -17,6 +17,7 @@ __all__ = [
     "Normal",
     "Probability",
     "Uniform",
+    "is_study",
     "montecarlo",
     "shown",
 ]

@@ -154,6 +154,11 @@ class Probability:
         save_netcdf(self.dataset, path)
 
 
+def is_study(dataset: Any) -> bool:
+    """Whether an `xarray.Dataset` is that of a `Probability`: `Probability(dataset)` then speaks for it again."""
+    return "criterion_probability" in dataset
+
+
 def shown(estimate: Estimate) -> str:
     """`0.874 (0.852 to 0.894)`."""
     return f"{estimate.value:.4f} ({estimate.lower:.4f} to {estimate.upper:.4f})"
