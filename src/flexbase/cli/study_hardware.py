@@ -5,18 +5,18 @@ from __future__ import annotations
 from typing import Annotated
 
 from cyclopts import App, Parameter
-from rich.console import RenderableType
 
 from flexbase.cli.document import document
+from flexbase.cli.hardware_table import tables
 from flexbase.cli.options import Json, option
 from flexbase.cli.out import OutFile, check_out, write_out, written
 from flexbase.cli.pose import Robot
 from flexbase.cli.progress import progress_bar
-from flexbase.cli.show import put, table, title
+from flexbase.cli.show import put
 from flexbase.cli.words import Names, names
 from flexbase.design.hardware import HARDWARE_METHODS
 from flexbase.plant import load
-from flexbase.study.hardware import HardwareStudy, hardware_study
+from flexbase.study.hardware import hardware_study
 
 app = App(
     name="hardware",
@@ -56,26 +56,4 @@ def study_hardware(
         )
     content = found.to_dict()
     write_out(out, "study hardware", found, content)
-    put(document("study hardware", content)) if json else put(*_tables(found), *written(out))
-
-
-def _tables(found: HardwareStudy) -> list[RenderableType]:
-    rows = [
-        [
-            row.method,
-            f"{row.rate_hz / 1e3:g} kHz x{row.gain_scale:g}",
-            *(f"{100.0 * share:.0f}" for share in (row.stable_share, row.margin_share, row.perturbed_share)),
-            f"{100.0 * row.complete_share:.0f}",
-            "none" if row.tip_stiffness is None else f"{row.tip_stiffness:.2g}",
-        ]
-        for row in found.rows
-    ]
-    heading = ["method", "rate, gains", "stable", "margin", "changed", "all", "stiffness N/m"]
-    said = f"  Shares of {found.rows[0].poses} poses in percent; half-width of the 95 % intervals up to "
-    widest = max(high - low for row in found.rows for low, high in (row.stable_interval, row.complete_interval))
-    return [
-        title(found.robot, "which controllers run"),
-        "",
-        table(heading, rows, words=(0, 1)),
-        said + f"{50 * widest:.0f}.",
-    ]
+    put(document("study hardware", content)) if json else put(*tables(found), *written(out))
