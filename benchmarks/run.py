@@ -18,6 +18,7 @@ from kernels import panda1_two_threads_vs_one, panda1_vs_numpy_rows, vs_pinocchi
 from maps import map_rows_vs_poses
 from matrix_product import panda1_fraction_of_dgemm
 from mujoco_batch import panda1_vs_mujoco_batch
+from simulations import simulate_many_vs_simulate, simulate_vs_mujoco
 
 ALL = (
     vs_pinocchio_loop,
@@ -27,6 +28,8 @@ ALL = (
     panda1_two_threads_vs_one,
     panda1_first_call,
     exact_vs_recursion,
+    simulate_vs_mujoco,
+    simulate_many_vs_simulate,
     map_rows_vs_poses,
 )
 
