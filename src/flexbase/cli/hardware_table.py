@@ -9,6 +9,7 @@ from flexbase.study.hardware import HardwareStudy
 
 
 def tables(found: HardwareStudy) -> list[RenderableType]:
+    """A line a method and setting, and how far the shares may be trusted."""
     rows = [
         [
             row.method,

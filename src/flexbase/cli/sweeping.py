@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from flexbase.cli.cells_bar import cells_bar
 from flexbase.cli.execution import ExecutionOptions
 from flexbase.cli.plane import PlaneOptions
-from flexbase.cli.progress import cells_bar
 from flexbase.cli.words import Names
 from flexbase.control.compensator import Compensator
 from flexbase.errors import InputError
