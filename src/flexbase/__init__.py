@@ -24,6 +24,9 @@ from flexbase.model.task import Gains
 from flexbase.plant import Plant, Pose, load
 from flexbase.simulate import Run, Runs, simulate, simulate_many
 from flexbase.simulate.mjcf import to_mjcf
+from flexbase.simulate.sampled import simulate_sampled, simulate_sampled_many
+from flexbase.simulate.sampled_result import Push, SampledRun
+from flexbase.study.agreement import Agreement, agreement_study
 from flexbase.study.layout import Layout, best_layout
 from flexbase.study.montecarlo import Criterion, Fixed, Lognormal, Normal, Probability, Uniform, montecarlo
 from flexbase.study.posture import Postures, best_posture
@@ -37,6 +40,7 @@ __version__ = "0.1.0"
 __all__ = [
     "MEASURES",
     "METHODS",
+    "Agreement",
     "Certificate",
     "Compensator",
     "Criterion",
@@ -58,16 +62,19 @@ __all__ = [
     "Pose",
     "Postures",
     "Probability",
+    "Push",
     "RobustCurves",
     "RobustPoints",
     "Run",
     "Runs",
+    "SampledRun",
     "SecondOrder",
     "SingularArm",
     "Uniform",
     "Unreachable",
     "Verdict",
     "__version__",
+    "agreement_study",
     "best_layout",
     "best_posture",
     "design",
@@ -85,6 +92,8 @@ __all__ = [
     "robust_points",
     "simulate",
     "simulate_many",
+    "simulate_sampled",
+    "simulate_sampled_many",
     "summary",
     "sweep",
     "to_mjcf",

@@ -50,7 +50,7 @@ SHOWN = {
     "design": "--tip --joints --elbow --branch --method --natural-frequency --highest-frequency --objective --radius "
     "--margin --derivatives --step --iterations --seed --stiffness --damping --out --json",
     "simulate": "--from --to --elbow --branch --compensator --switch --end --trajectory --compensate --interval "
-    "--self-motion --plant --stiffness --damping --out --json",
+    "--self-motion --plant --sampled --method --rate --disturb --stiffness --damping --out --json",
     "ellipsoid": "--tip --joints --elbow --branch --compensator --convention --out --json",
     "map": "--over --shape --measure --measures --bounds --elbow --branch --hold --axes --vary --sampling --seed "
     "--engine --resume --scheduler --workers --compensator --difference --out --json",
@@ -60,6 +60,7 @@ SHOWN = {
     "posture": "--tip --elbow --branch --measure --compensator --out --json",
     "rac": "--axes --hold --modes --count --compensator --out --json",
     "layout": "--targets --measure --goal --along --turn --within --elbow --branch --compensator --out --json",
+    "study": "",
     "reproduce": "--out --json",
     "robots": "--json",
     "init": "--schema",

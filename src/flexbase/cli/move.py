@@ -10,6 +10,7 @@ from cyclopts import Group, Parameter
 from flexbase.checks import choose
 from flexbase.cli.options import option
 from flexbase.cli.words import number
+from flexbase.errors import InputError
 from flexbase.simulate.engines import ENGINES
 from flexbase.simulate.run import SELF_MOTION
 
@@ -40,3 +41,11 @@ class RunOptions:
         """All of them, for `simulate`. Raises InputError."""
         choose("--plant", self.engine, ENGINES)
         return asdict(self)
+
+    def times(self) -> dict[str, Any]:
+        """Those of a sampled run. Raises InputError for options that it does not have."""
+        here, plain = self.given(), asdict(RunOptions())
+        for name in ("interval", "compensate", "self_motion"):
+            if here[name] != plain[name]:
+                raise InputError(f"--{name.replace('_', '-')}: a sampled run has none. Leave it out.")
+        return {name: here[name] for name in ("switch", "end", "trajectory", "engine")}

@@ -13,10 +13,14 @@ from flexbase.cli.options import CompensatorFile, Json, option
 from flexbase.cli.out import Out, check_out, write_out, written
 from flexbase.cli.pose import Elbow, Robot, compensator_of, tip_pose
 from flexbase.cli.run import tables
+from flexbase.cli.sampled import SampledOptions
+from flexbase.cli.sampled import tables as sampled_tables
 from flexbase.cli.show import put
 from flexbase.cli.words import Vector, numbers
 from flexbase.plant import load
+from flexbase.simulate import Run
 from flexbase.simulate import simulate as run_of
+from flexbase.simulate.sampled_result import SampledRun
 
 app = App(
     name="simulate",
@@ -24,6 +28,8 @@ app = App(
   flexbase simulate ueda2003 --from 0.33,0.25 --to 0.33,-0.25
   flexbase simulate ueda2003 --from 0.33,0.25 --to 0.33,-0.25 \\
       --compensator E.json --out run.png
+  flexbase simulate ueda2003 --from 0.33,0.25 --to 0.33,-0.25 \\
+      --sampled --method coprime --plant mujoco --disturb 50,0 --end 0.8
 
 Settled: the tip comes below 0.1 mm after the switch and stays there.
 Exit status: 0 settled, 1 did not settle, 2 wrong input.""",
@@ -42,6 +48,7 @@ def simulate(
     compensator: CompensatorFile = None,
     run: RunOptions = RunOptions(),  # noqa: B008
     loop: GainOptions = GainOptions(),  # noqa: B008
+    sampled: SampledOptions = SampledOptions(),  # noqa: B008
     out: Out = None,
     json: Json = False,
 ) -> int:
@@ -51,15 +58,14 @@ def simulate(
     law = compensator_of(plant, compensator)
     there = tip_pose(plant, "--to", goal, elbow, near=law)
     here = tip_pose(plant, "--from", start, elbow, near=there)
-    found = run_of(
-        plant,
-        here,
-        there,
-        law,
-        gains=loop.gains(plant),
-        **run.given(),
-    )
+    found: Run | SampledRun
+    if sampled.asked:
+        controller = sampled.controller(there, loop.gains(plant), law)
+        found = sampled.run(controller, here, **run.times())
+    else:
+        found = run_of(plant, here, there, law, gains=loop.gains(plant), **run.given())
     content = found.to_dict()
     write_out(out, "simulate", found, content)
-    put(document("simulate", content)) if json else put(*tables(found), *written(out))
+    rows = tables(found) if isinstance(found, Run) else sampled_tables(found)
+    put(document("simulate", content)) if json else put(*rows, *written(out))
     return 0 if found.settled else 1

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from flexbase.checks import Array
+from flexbase.plant import Pose
 from flexbase.report.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, RED, SKY, new_figure
 from flexbase.simulate import Run
 
@@ -13,8 +17,28 @@ LINES = (BLUE, RED, GREEN, ORANGE, PURPLE, SKY)
 HEADROOM = 1.25  # of the error scale over the error after the first tenth of the settling phase
 
 
+class Drawable(Protocol):
+    """What a run must have to be drawn: see `Run` for what they are."""
+
+    @property
+    def goal(self) -> Pose: ...
+    @property
+    def t(self) -> Array: ...
+    @property
+    def tip_error(self) -> Array: ...
+    @property
+    def torque(self) -> Array: ...
+    @property
+    def switch(self) -> float: ...
+
+
 def draw_run(run: Run) -> Figure:
     """Tip error (positions, and rotations below) and joint torques; the switch to the task loop is marked."""
+    return draw_motion(run, _headline(run))
+
+
+def draw_motion(run: Drawable, headline: str) -> Figure:
+    """Tip error and joint torques of any run."""
     rows, units = run.goal.arm.task.rows, run.goal.arm.task.units
     kinds = [kind for kind in ("m", "rad") if kind in units]
     figure = new_figure(5.6, 1.9 * (len(kinds) + 1) + 0.4)
@@ -24,15 +48,17 @@ def draw_run(run: Run) -> Figure:
         _error(ax, run, columns, [rows[i] for i in columns], "mm" if kind == "m" else "mrad")
     _torques(axes[-1], run)
     for ax in axes:
-        ax.axvline(run.switch, color=INK, linewidth=0.8, linestyle=(0, (2, 2)))
+        if run.switch > 0.0:
+            ax.axvline(run.switch, color=INK, linewidth=0.8, linestyle=(0, (2, 2)))
         ax.grid(axis="y")
         ax.set_xlim(float(run.t[0]), float(run.t[-1]))
-    axes[-1].set_xlabel("time [s], task-space control from the dashed line on")
-    axes[0].set_title(_headline(run), loc="left")
+    moved = ", task-space control from the dashed line on" if run.switch > 0.0 else ""
+    axes[-1].set_xlabel(f"time [s]{moved}")
+    axes[0].set_title(headline, loc="left")
     return figure
 
 
-def _error(ax: Axes, run: Run, columns: list[int], names: list[str], unit: str) -> None:
+def _error(ax: Axes, run: Drawable, columns: list[int], names: list[str], unit: str) -> None:
     error = 1e3 * run.tip_error[:, columns]
     for i, name in enumerate(names):
         ax.plot(run.t, error[:, i], color=LINES[i], linewidth=1.1, label=name)
@@ -48,7 +74,7 @@ def _error(ax: Axes, run: Run, columns: list[int], names: list[str], unit: str) 
     ax.legend(loc="upper right", ncols=len(names) + 1)
 
 
-def _torques(ax: Axes, run: Run) -> None:
+def _torques(ax: Axes, run: Drawable) -> None:
     arm = run.goal.arm
     kinds = arm.mechanism.joint_types[arm.m :]
     for i, name in enumerate(arm.mechanism.joint_names[arm.m :]):

@@ -24,11 +24,13 @@ from flexbase.report.draw_probability import draw_probability
 from flexbase.report.draw_robust_curves import draw_robust_curves
 from flexbase.report.draw_robust_points import draw_robust_points
 from flexbase.report.draw_run import draw_run
+from flexbase.report.draw_sampled import draw_sampled
 from flexbase.report.draw_sweep import draw_chart, draw_dataset
 from flexbase.report.draw_verdict import draw_verdict
 from flexbase.report.save import check_picture_path, save_figure
 from flexbase.report.style import styled
 from flexbase.simulate import Run
+from flexbase.simulate.sampled_result import SampledRun
 from flexbase.study.layout import Layout
 from flexbase.study.montecarlo import Probability, is_study
 from flexbase.study.posture import Postures
@@ -57,6 +59,7 @@ plot.register(Modes)(styled()(draw_modes))
 plot.register(Verdict)(styled()(draw_verdict))
 plot.register(Compensator)(styled()(draw_compensator))
 plot.register(Run)(styled()(draw_run))
+plot.register(SampledRun)(styled()(draw_sampled))
 plot.register(Chart)(styled()(draw_chart))
 plot.register(Manipulability)(styled()(draw_manipulability))
 plot.register(Postures)(styled()(draw_postures))

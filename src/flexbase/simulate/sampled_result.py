@@ -69,7 +69,7 @@ class SampledRun:
     @property
     def judged_from(self) -> float:
         """From when on the loop is left alone [s]: after the switch, and after the push."""
-        return max(self.switch, 0.0 if self.push is None else self.push.start + self.push.duration)
+        return max(self.switch, 0.0 if self.push is None else round(self.push.start + self.push.duration, 9))
 
     @property
     def error_size(self) -> Array:
