@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import multiprocessing
+import os
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -34,6 +36,7 @@ class Setting(NamedTuple):
 
 
 SETTINGS = tuple(Setting(*pair) for pair in ((1e3, 0.25), (1e3, 1.0), (1e3, 4.0), (4e3, 1.0), (4e3, 4.0)))
+BLAS_THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 CONFIDENCE = 1.959963984540054  # standard deviations of a 95 % interval
 
 
@@ -141,7 +144,7 @@ def _run(tasks: list[Task], workers: int) -> Iterator[tuple[str, list[Outcome]]]
     if workers == 1:
         yield from map(outcomes_of, tasks)
         return
-    with ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")) as pool:
+    with one_blas_thread(), ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")) as pool:
         futures = [pool.submit(outcomes_of, task) for task in tasks]
         try:
             for future in as_completed(futures):
@@ -149,6 +152,21 @@ def _run(tasks: list[Task], workers: int) -> Iterator[tuple[str, list[Outcome]]]
         finally:
             for future in futures:
                 future.cancel()
+
+
+@contextmanager
+def one_blas_thread() -> Iterator[None]:
+    """Processes started within use one thread each for their small matrices: more would wait for each other."""
+    before = {name: os.environ.get(name) for name in BLAS_THREADS}
+    os.environ.update(dict.fromkeys(BLAS_THREADS, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name)
+            else:
+                os.environ[name] = value
 
 
 def outcomes_of(task: Task) -> tuple[str, list[Outcome]]:
