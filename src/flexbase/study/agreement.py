@@ -17,6 +17,7 @@ from flexbase.design.hardware import HARDWARE_METHODS
 from flexbase.errors import InputError, import_extra
 from flexbase.plant import Plant, Pose
 from flexbase.study.agreement_case import LONGEST, NUDGE, Case, Outcome, draw_case, watch
+from flexbase.study.processes import one_blas_thread
 from flexbase.study.workspace import random_poses
 from flexbase.trace.kernel import cores
 
@@ -253,7 +254,7 @@ def _mapper(workers: int) -> Iterator[Mapper]:
     if workers == 1:
         yield map
         return
-    with ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")) as pool:
+    with one_blas_thread(), ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")) as pool:
         try:
             yield pool.map
         except BaseException:

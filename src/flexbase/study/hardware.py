@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-import multiprocessing
-import os
-import warnings
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -24,8 +19,8 @@ from flexbase.linear.disk_margin import disk_margin
 from flexbase.model.sensing import TYPICAL, Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Plant, Pose
+from flexbase.study.processes import in_processes
 from flexbase.study.workspace import random_poses
-from flexbase.trace.kernel import cores
 
 
 class Setting(NamedTuple):
@@ -36,7 +31,6 @@ class Setting(NamedTuple):
 
 
 SETTINGS = tuple(Setting(*pair) for pair in ((1e3, 0.25), (1e3, 1.0), (1e3, 4.0), (4e3, 1.0), (4e3, 4.0)))
-BLAS_THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 CONFIDENCE = 1.959963984540054  # standard deviations of a 95 % interval
 
 
@@ -128,7 +122,7 @@ def hardware_study(
     drawn = random_poses(plant, poses, seed)
     tasks = [(pose, name, settings, sensing) for pose in drawn for name in chosen]
     found: dict[tuple[str, Setting], list[Outcome]] = {(name, one): [] for name in chosen for one in settings}
-    for done, (name, outcomes) in enumerate(_run(tasks, workers or cores()), start=1):
+    for done, (_, (name, outcomes)) in enumerate(in_processes(outcomes_of, tasks, workers), start=1):
         for setting, outcome in zip(settings, outcomes, strict=True):
             found[name, setting].append(outcome)
         progress(done, len(tasks))
@@ -140,41 +134,10 @@ def hardware_study(
 Task = tuple[Pose, str, Sequence[Setting], Sensing]
 
 
-def _run(tasks: list[Task], workers: int) -> Iterator[tuple[str, list[Outcome]]]:
-    if workers == 1:
-        yield from map(outcomes_of, tasks)
-        return
-    with one_blas_thread(), ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")) as pool:
-        futures = [pool.submit(outcomes_of, task) for task in tasks]
-        try:
-            for future in as_completed(futures):
-                yield future.result()
-        finally:
-            for future in futures:
-                future.cancel()
-
-
-@contextmanager
-def one_blas_thread() -> Iterator[None]:
-    """Processes started within use one thread each for their small matrices: more would wait for each other."""
-    before = {name: os.environ.get(name) for name in BLAS_THREADS}
-    os.environ.update(dict.fromkeys(BLAS_THREADS, "1"))
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name)
-            else:
-                os.environ[name] = value
-
-
 def outcomes_of(task: Task) -> tuple[str, list[Outcome]]:
     """One method at one pose, at every setting."""
     pose, name, settings, sensing = task
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # cautions of designs: the verdict is what counts here
-        return name, [_outcome(pose, name, setting, sensing) for setting in settings]
+    return name, [_outcome(pose, name, setting, sensing) for setting in settings]
 
 
 def _outcome(pose: Pose, name: str, setting: Setting, sensing: Sensing) -> Outcome:
