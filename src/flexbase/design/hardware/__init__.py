@@ -1,6 +1,18 @@
 """Controllers for the loop as it runs, one file a method; importing them fills the registry."""
 
-from flexbase.design.hardware import compensated, constant, coprime, sampled
+from flexbase.design.hardware import compensated, constant, coprime, deflection, lqg, notch, robust, sampled, viscous
 from flexbase.design.hardware.registry import HARDWARE_METHODS, controller_for
 
-__all__ = ["HARDWARE_METHODS", "compensated", "constant", "controller_for", "coprime", "sampled"]
+__all__ = [
+    "HARDWARE_METHODS",
+    "compensated",
+    "constant",
+    "controller_for",
+    "coprime",
+    "deflection",
+    "lqg",
+    "notch",
+    "robust",
+    "sampled",
+    "viscous",
+]

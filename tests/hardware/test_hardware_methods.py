@@ -1,0 +1,169 @@
+"""Every registered controller for real hardware: what its verdict says is what the disturbed loop does.
+
+Adding a method to `HARDWARE_METHODS` puts it under these tests. The witnesses step the loop sample by sample, or
+disturb it and look at its eigenvalues.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+import flexbase as fb
+from flexbase.control.hardware import HardwareVerdict, hardware_verdict
+from flexbase.control.sampled_controller import SampledController
+from flexbase.control.sampled_loop import close_loop
+from flexbase.control.sampled_plant import sampled_plant
+from flexbase.design.hardware import HARDWARE_METHODS, controller_for
+from flexbase.errors import FlexbaseError
+from flexbase.linear.discrete import Discrete, delay, series
+from flexbase.model.sensing import Sensing
+from systems.planar import PAPER_TIP
+
+SYSTEMS = {
+    "paper, 1 kHz": lambda: (fb.load("ueda2003").at_tip(PAPER_TIP), Sensing()),
+    "paper, 4 kHz": lambda: (fb.load("ueda2003").at_tip(PAPER_TIP), Sensing(rate=4000.0)),
+    "paper, slow camera": lambda: (fb.load("ueda2003").at_tip(PAPER_TIP), Sensing(rate=4000.0, task_every=4)),
+    "UR5e": lambda: (fb.load("ur5e-platform").at([0.3, -1.2, 1.4, -0.5, 0.8, 0.2]), Sensing()),
+}
+SLOW_ON = {("sampled", "UR5e"), ("constant", "UR5e")}  # searches over 21 gains: their own tests look at them
+
+
+@cache
+def made(method: str, system: str) -> tuple[SampledController, HardwareVerdict]:
+    if (method, system) in SLOW_ON:
+        pytest.skip("slow here, tested on its own")
+    pose, sensing = SYSTEMS[system]()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", fb.FlexbaseWarning)  # cautions of ideal designs: the verdict is looked at here
+        try:
+            controller = controller_for(pose, method, sensing)
+        except (FlexbaseError, fb.FlexbaseWarning) as refusal:
+            pytest.skip(f"{refusal}")
+    return controller, hardware_verdict(controller)
+
+
+@pytest.fixture(params=[(method, system) for method in HARDWARE_METHODS for system in SYSTEMS], ids=", ".join)
+def case(request: pytest.FixtureRequest) -> tuple[SampledController, HardwareVerdict]:
+    return made(*request.param)
+
+
+def stepped(controller: SampledController, samples: int) -> np.ndarray:
+    """Largest plant and controller state, sample by sample from a kick: plain recursion with the sensor's hold."""
+    pose, sensing = controller.pose, controller.sensing
+    n, k = pose.arm.n, pose.arm.k
+    plant, system = sampled_plant(pose, sensing), controller.system
+    rng = np.random.default_rng(0)
+    x, c, held = rng.normal(size=plant.order), np.zeros(system.order), np.zeros(k)
+    x *= 1e-6
+    size = []
+    for sample in range(samples):
+        # measurements have no throughput from torques: compute_delay is 1
+        y = (plant.C @ x)[: k + 2 * n]
+        held = y[:k] if sample % sensing.task_every == 0 else held
+        y = np.concatenate([held, y[k:]])
+        u = system.C @ c + system.D @ y
+        c = system.A @ c + system.B @ y
+        x = plant.A @ x + plant.B[:, :n] @ u
+        size.append(max(np.abs(x).max(), np.abs(c).max(initial=0.0)))
+        if size[-1] > 1e6:
+            break
+    return np.array(size)
+
+
+def test_shapes_and_numbers(case: tuple[SampledController, HardwareVerdict]) -> None:
+    """Torques of n joints from k + 2n measurements, all finite, the name of the method on it."""
+    controller, verdict = case
+    n, k = controller.pose.arm.n, controller.pose.arm.k
+    assert controller.system.D.shape == (n, k + 2 * n)
+    for name in "ABCD":
+        assert np.all(np.isfinite(getattr(controller.system, name)))
+    assert controller.system.step == controller.sensing.step
+    assert controller.name in HARDWARE_METHODS
+    assert verdict.method == controller.name
+
+
+def test_stability_is_what_stepping_shows(case: tuple[SampledController, HardwareVerdict]) -> None:
+    """Stable: a kick has died to less than exp(-3) of its peak after 6 slowest time constants; else it grows."""
+    controller, verdict = case
+    if abs(verdict.spectral_radius - 1.0) < 2e-4:
+        pytest.skip("too near the border for a finite run")
+    constant = abs(1.0 / np.log(verdict.spectral_radius))
+    size = stepped(controller, min(int(6.0 * constant) + 200, 60000))
+    if verdict.stable:
+        assert size[-1] < np.exp(-3.0) * size.max()
+    else:
+        assert size[-1] > 10.0 * size[0]
+
+
+def disturbed_radius(controller: SampledController, plant: Discrete, factors: np.ndarray) -> np.ndarray:
+    """Spectral radius with every torque channel times a complex number, for many sets of them."""
+    system = controller.system
+    radii = []
+    for one in factors:
+        C, D = one[:, None] * system.C, one[:, None] * system.D
+        top = np.hstack([plant.A + plant.B @ D @ plant.C, plant.B @ C])
+        A = np.vstack([top, np.hstack([system.B @ plant.C, system.A])])
+        radii.append(np.abs(np.linalg.eigvals(A)).max())
+    return np.array(radii)
+
+
+@pytest.mark.parametrize("method", list(HARDWARE_METHODS))
+def test_torque_disk_margin_is_tight(method: str) -> None:
+    """On the disk's border of 0.97 alpha no pair of gains and phases destabilises; of 1.05 alpha some pair does."""
+    controller, verdict = made(method, "paper, 4 kHz")
+    if not verdict.stable:
+        pytest.skip("unstable here")
+    n, k = 2, 2
+    plant = sampled_plant(controller.pose, controller.sensing).select(list(range(k + 2 * n)), list(range(n)))
+    turn = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 36, endpoint=False))
+    pairs = np.array([(a, b) for a in turn for b in turn])
+
+    def at(alpha: float) -> np.ndarray:
+        delta = 0.5 * alpha * pairs
+        return disturbed_radius(controller, plant, (1.0 + delta) / (1.0 - delta))
+
+    assert at(0.97 * verdict.disk_margin_torque).max() < 1.0
+    assert at(1.05 * verdict.disk_margin_torque).max() > 1.0
+
+
+def test_delay_margin_is_the_delayed_loop(case: tuple[SampledController, HardwareVerdict]) -> None:
+    """Stable with every whole number of samples below the margin; unstable with the next, where one exists."""
+    controller, verdict = case
+    if not verdict.stable or verdict.delay_margin_s is None or controller.sensing.task_every > 1:
+        pytest.skip("no delay margin to test: unstable, without limit, or only approximate")
+    step, n = controller.sensing.step, controller.pose.arm.n
+    most = int(verdict.delay_margin_s / step)
+
+    def radius(samples: int) -> float:
+        late = series(controller.system, delay(n, samples, step))
+        return close_loop(controller.pose, replace(controller, system=late)).radius
+
+    assert all(radius(samples) < 1.0 for samples in range(min(most, 12) + 1))
+    if most < 12:
+        assert radius(most + 1) > 1.0
+
+
+@pytest.mark.parametrize("method", ["coprime", "robust", "lqg"])
+def test_rigid_base_is_held(method: str, paper: fb.Plant) -> None:
+    """Made and run on a base 10 000 times stiffer, at 1 kHz, where the paper's gains are unstable."""
+    stiff = replace(paper.arm, base=replace(paper.arm.base, stiffness=1e4 * paper.arm.base.stiffness))
+    pose = fb.Plant(stiff).at(paper.at_tip(PAPER_TIP).q[1:])
+    assert close_loop(pose, controller_for(pose, "none")).radius > 1.0
+    assert close_loop(pose, controller_for(pose, method)).radius < 1.0
+
+
+def test_every_method_is_stable_somewhere() -> None:
+    """Skips cannot hide a method that never works. Only plain PD does not: here the base undoes it without delay, too."""
+    stable = dict.fromkeys(HARDWARE_METHODS, 0)
+    for method in HARDWARE_METHODS:
+        for system in SYSTEMS:
+            try:
+                stable[method] += made(method, system)[1].stable
+            except pytest.skip.Exception:
+                continue
+    assert {method for method, count in stable.items() if count == 0} == {"none"}
