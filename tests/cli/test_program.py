@@ -50,7 +50,9 @@ SHOWN = {
     "design": "--tip --joints --elbow --branch --method --natural-frequency --highest-frequency --objective --radius "
     "--margin --derivatives --step --iterations --seed --stiffness --damping --out --json",
     "simulate": "--from --to --elbow --branch --compensator --switch --end --trajectory --compensate --interval "
-    "--self-motion --plant --sampled --method --rate --disturb --stiffness --damping --out --json",
+    "--self-motion --plant --sampled --method --disturb --rate --task-every --task-rate --compute-delay --task-delay "
+    "--encoder-counts --acceleration --accelerometer-lag --acceleration-filter --acceleration-noise --task-noise "
+    "--torque-limit --torque-slew --stiffness --damping --out --json",
     "ellipsoid": "--tip --joints --elbow --branch --compensator --convention --out --json",
     "map": "--over --shape --measure --measures --bounds --elbow --branch --hold --axes --vary --sampling --seed "
     "--engine --resume --scheduler --workers --compensator --difference --out --json",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Annotated, Any
 
 from cyclopts import Group, Parameter
@@ -10,19 +10,21 @@ from rich.console import RenderableType
 
 from flexbase.cli.digits import number as shown
 from flexbase.cli.options import option
+from flexbase.cli.sensing import SensingOptions
 from flexbase.cli.show import facts, title, verdict
-from flexbase.cli.words import Vector, number, numbers
+from flexbase.cli.words import Vector, numbers
 from flexbase.control.compensator import Compensator
 from flexbase.control.sampled_controller import SampledController, pd_with_gain
-from flexbase.design.hardware import controller_for
+from flexbase.design.hardware import HARDWARE_METHODS, controller_for
 from flexbase.errors import InputError
-from flexbase.model.sensing import TYPICAL, checked_sensing
+from flexbase.linear.linearise import gain_of
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
 from flexbase.simulate.sampled import simulate_sampled
 from flexbase.simulate.sampled_result import Push, SampledRun
 
 PUSH = 0.02  # s
+OF = f"of controller: {', '.join(HARDWARE_METHODS)}"
 SAMPLED = Group("Sampled", sort_key=15)
 
 
@@ -32,32 +34,33 @@ class SampledOptions:
     """The loop as it runs, by the project's [sensing] table or 1 kHz with one sample of delay."""
 
     sampled: Annotated[bool, Parameter(help="run a sampled controller: held torques, delays, counts, noise")] = False
-    method: Annotated[str | None, Parameter(metavar="NAME", help="of controller; see flexbase recommend")] = None
-    rate: Annotated[float | None, option(number, "HZ", "of the controller, in place of the project's")] = None
+    method: Annotated[str | None, Parameter(metavar="NAME", help=f"of controller: {', '.join(HARDWARE_METHODS)}")] = (
+        None
+    )
     disturb: Annotated[
         Vector | None, option(numbers, "F,F", "force on the tool for 20 ms, midway in settling [N, N m]")
     ] = None
 
-    @property
-    def asked(self) -> bool:
+    def asked(self, senses: SensingOptions) -> bool:
         """Whether the loop is sampled. Raises InputError for options that mean nothing without it."""
-        given = [name for name in ("method", "rate", "disturb") if getattr(self, name) is not None]
+        words = {"method": self.method, "disturb": self.disturb, **vars(senses)}
+        given = [name for name, value in words.items() if value is not None]
         if given and not self.sampled:
-            raise InputError(f"--{given[0]}: says how a sampled loop runs. Give --sampled with it.")
+            raise InputError(f"--{given[0].replace('_', '-')}: says how a sampled loop runs. Give --sampled with it.")
         return self.sampled
 
-    def controller(self, goal: Pose, gains: Gains | None, law: Compensator | None) -> SampledController:
-        """By the method, else the compensator, else task PD alone. Raises InputError, Infeasible."""
-        declared = goal.arm.sensing or TYPICAL
-        sensing = declared if self.rate is None else replace(declared, rate=self.rate)
-        if law is None or self.method is not None:
-            if law is not None:
-                raise InputError("--method and --compensator are both given. Give one of them.")
-            return controller_for(goal, self.method or "none", sensing, gains)
-        used = gains or goal.arm.gains
+    def controller(
+        self, goal: Pose, senses: SensingOptions, gains: Gains | None, law: Compensator | None
+    ) -> SampledController:
+        """By the method, else task PD with the compensator, if any. Raises InputError, Infeasible."""
+        sensing, used = senses.sensing(goal.plant), gains or goal.arm.gains
+        if law is None:
+            return controller_for(goal, self.method or "none", sensing, used)
+        if self.method is not None:
+            raise InputError("--method and --compensator are both given. Give one of them.")
         if used is None:
             raise InputError(f"{goal.plant.name}: no task gains. Give --stiffness and --damping.")
-        return pd_with_gain(goal, checked_sensing(sensing, goal.arm.n), used, law.E, "compensator")
+        return pd_with_gain(goal, sensing, used, gain_of(goal, law), "compensator")
 
     def run(self, controller: SampledController, start: Pose, **times: Any) -> SampledRun:
         """The move. Raises InputError, MissingExtra."""

@@ -15,6 +15,7 @@ from flexbase.cli.pose import Elbow, Robot, compensator_of, tip_pose
 from flexbase.cli.run import tables
 from flexbase.cli.sampled import SampledOptions
 from flexbase.cli.sampled import tables as sampled_tables
+from flexbase.cli.sensing import SensingOptions
 from flexbase.cli.show import put
 from flexbase.cli.words import Vector, numbers
 from flexbase.plant import load
@@ -49,6 +50,7 @@ def simulate(
     run: RunOptions = RunOptions(),  # noqa: B008
     loop: GainOptions = GainOptions(),  # noqa: B008
     sampled: SampledOptions = SampledOptions(),  # noqa: B008
+    senses: SensingOptions = SensingOptions(),  # noqa: B008
     out: Out = None,
     json: Json = False,
 ) -> int:
@@ -59,8 +61,8 @@ def simulate(
     there = tip_pose(plant, "--to", goal, elbow, near=law)
     here = tip_pose(plant, "--from", start, elbow, near=there)
     found: Run | SampledRun
-    if sampled.asked:
-        controller = sampled.controller(there, loop.gains(plant), law)
+    if sampled.asked(senses):
+        controller = sampled.controller(there, senses, loop.gains(plant), law)
         found = sampled.run(controller, here, **run.times())
     else:
         found = run_of(plant, here, there, law, gains=loop.gains(plant), **run.given())

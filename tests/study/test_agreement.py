@@ -1,0 +1,114 @@
+"""The agreement study: it is blind to the verdict, counts right, does not depend on timing, and shows what is wrong."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import flexbase as fb
+from flexbase import InputError
+from flexbase.study import agreement as study
+from flexbase.study.agreement import Agreement, agreement_study, explain
+from flexbase.study.agreement_case import Outcome, draw_case, growth_of, watch
+
+pytest.importorskip("mujoco")
+
+QUICK = ("none", "coprime", "exact")
+POSES = 16
+
+
+@pytest.fixture(scope="module")
+def small(paper):
+    return agreement_study(paper, poses=POSES, methods=QUICK, workers=1)
+
+
+def test_verdicts_come_true(small):
+    """Sixteen poses; the whole study has 500 and 2 %, which none of sixteen may break."""
+    found = small.to_dict()
+    assert found["agreement"] == 1.0
+    assert found["disagreements"] == []
+    assert 0.3 <= found["share_stable"] <= 0.7
+    assert found["constant_predictor"]["agreement"] <= 0.7
+    assert len({case["method"] for case in found["cases"]}) == len(QUICK)
+    assert sum(found["confusion"].values()) == found["poses"] == POSES
+
+
+def test_growth_is_what_the_linear_loop_promises(small):
+    """Not only the sign: over half of the cases within 10 %; beating between modes blurs some slopes."""
+    assert small.growth_error < 0.1
+
+
+def test_wrong_verdicts_are_found_and_not_explained_away(small):
+    """Radii mirrored at 1: the outcomes, which the verdict does not touch, contradict every one of them."""
+    mirrored = tuple(replace(case, radius=2.0 - case.radius) for case in small.cases)
+    assert [watch(case) for case in mirrored[:2]] == list(small.outcomes[:2])
+    wrong = replace(small, cases=mirrored)
+    assert wrong.agreement == 0.0
+    assert wrong.false_stable_rate == wrong.false_unstable_rate == 1.0
+    assert len(wrong.disagreements()) == POSES
+    far = max(mirrored, key=lambda case: abs(case.radius - 1.0))
+    assert explain(far)["why"].startswith("unexplained")
+
+
+def test_a_loop_at_the_border_is_explained_by_its_growth(small, paper):
+    """A verdict that is wrong by a rounding of the radius at the border is called that, with the figures."""
+    case = min(small.cases, key=lambda case: abs(case.radius - 1.0))
+    step = 1e-9 if not case.stable else -1e-9
+    border = replace(case, radius=1.0 - step)
+    assert border.stable != case.stable
+    why = explain(border)["why"]
+    assert "promised growth" in why
+    assert "border" in why
+
+
+def test_the_answer_does_not_depend_on_the_workers(small, paper):
+    again = agreement_study(paper, poses=POSES, methods=QUICK, workers=2)
+    assert json.dumps(again.to_dict()) == json.dumps(small.to_dict())  # as text: some growths are NaN
+
+
+def test_rates_are_counted_by_outcome(small):
+    """Two of three that settle called unstable; one of one that does not called stable."""
+    cases = [replace(small.cases[0], number=i, radius=radius) for i, radius in enumerate((1.1, 1.2, 0.9, 0.8))]
+    outcomes = [Outcome(settled, "slope", 1.0, -1.0) for settled in (True, True, True, False)]
+    found = Agreement("x", 0, tuple(cases), tuple(outcomes), 0, 0)
+    assert found.agreement == 0.25
+    assert found.false_unstable_rate == pytest.approx(2 / 3)
+    assert found.false_stable_rate == 1.0
+    assert found.constant_predictor() == {
+        "says": "stable",
+        "agreement": 0.75,
+        "false_stable_rate": 1.0,
+        "false_unstable_rate": 0.0,
+    }
+
+
+def test_growth_of_a_pure_exponential():
+    sizes = 3.0 * np.exp(-7.0 * 0.05 * np.arange(12))
+    assert growth_of(sizes, 0.05) == pytest.approx(-7.0)
+    assert np.isnan(growth_of(sizes[:1], 0.05))
+
+
+def test_classes_are_balanced_by_drawing_again(paper, monkeypatch):
+    """The commoner class stops at its share; a mix of one class alone is refused and says so."""
+    monkeypatch.setattr(study, "ATTEMPTS", 2)
+    with pytest.raises(InputError, match="do not balance"):
+        agreement_study(paper, poses=12, methods=["exact"], workers=1)
+
+
+def test_draws_are_by_number_alone(paper_pose):
+    one, two = (draw_case(paper_pose, 3, 1, 0, QUICK) for _ in range(2))
+    assert one.to_dict() == two.to_dict()
+    assert draw_case(paper_pose, 4, 1, 0, QUICK).to_dict() != one.to_dict()
+
+
+def test_wrong_words_are_named(paper):
+    with pytest.raises(InputError, match="method"):
+        agreement_study(paper, poses=4, methods=["magic"])
+    with pytest.raises(InputError, match="workers"):
+        agreement_study(paper, poses=4, workers=-1)
+    with pytest.raises(InputError, match="poses"):
+        agreement_study(paper, poses=0)
+    assert fb.agreement_study is agreement_study
