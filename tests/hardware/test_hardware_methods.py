@@ -158,7 +158,7 @@ def test_rigid_base_is_held(method: str, paper: fb.Plant) -> None:
 
 
 def test_every_method_is_stable_somewhere() -> None:
-    """Skips cannot hide a method that never works. Only plain PD does not: here the base undoes it without delay, too."""
+    """Skips cannot hide a method that never works. Only plain PD: here the base undoes it without delay, too."""
     stable = dict.fromkeys(HARDWARE_METHODS, 0)
     for method in HARDWARE_METHODS:
         for system in SYSTEMS:
