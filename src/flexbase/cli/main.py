@@ -18,6 +18,7 @@ COMMANDS = {
     "modes": "Vibration modes at a pose, and whether they are positive real.",
     "verdict": "The exact verdict: positive real, or where in frequency not.",
     "design": "A compensator: the change of control that makes a pose safe.",
+    "hardware": "Controllers for the loop as it runs, side by side.",
     "simulate": "Move the tip, then settle it: does the loop come to rest?",
     "ellipsoid": "Dynamic manipulability, without and with a compensator.",
     "map": "Measures over the tip's plane, joints, samples or parameters.",

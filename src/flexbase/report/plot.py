@@ -26,6 +26,7 @@ from flexbase.report.draw_robust_points import draw_robust_points
 from flexbase.report.draw_run import draw_run
 from flexbase.report.draw_sampled import draw_sampled
 from flexbase.report.draw_sweep import draw_chart, draw_dataset
+from flexbase.report.draw_validity import draw_validity
 from flexbase.report.draw_verdict import draw_verdict
 from flexbase.report.save import check_picture_path, save_figure
 from flexbase.report.style import styled
@@ -36,6 +37,7 @@ from flexbase.study.montecarlo import Probability, is_study
 from flexbase.study.posture import Postures
 from flexbase.study.robust_curves import RobustCurves
 from flexbase.study.robust_points import RobustPoints
+from flexbase.study.validity import Validity
 from flexbase.sweep.chart import Chart
 
 PAGE = ".html"
@@ -67,6 +69,7 @@ plot.register(RobustCurves)(styled()(draw_robust_curves))
 plot.register(RobustPoints)(styled()(draw_robust_points))
 plot.register(Layout)(styled()(draw_layout))
 plot.register(Probability)(styled()(draw_probability))
+plot.register(Validity)(styled()(draw_validity))
 
 
 def save_plot(result: object, path: str | Path) -> None:

@@ -1,0 +1,90 @@
+"""Verdicts on sampled controllers side by side, the highest safe gains, and where one stays valid: as tables."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rich.console import RenderableType
+from rich.padding import Padding
+from rich.text import Text
+
+from flexbase.cli.digits import number
+from flexbase.cli.show import BAD, GOOD, facts, table, title
+from flexbase.control.hardware import GOOD_MARGIN, HardwareVerdict
+from flexbase.study.comparison import Comparison
+from flexbase.study.safe_gain import SafeGain
+from flexbase.study.validity import Validity
+
+COLUMNS = (
+    "method",
+    "radius",
+    "torque\nmargin",
+    "sensor\nmargin",
+    "delay lag\n[ms]",
+    "worst\nradius",
+    "stiff\n[N/m]",
+    "tau\n[ms]",
+)
+NO_TORQUE = """  A robot that takes positions only cannot run these laws: they are torques. What
+  it can run is admittance, well below the bandwidth of its own position loop."""
+LEGEND = f"""  * safe: stable, disk margins of {GOOD_MARGIN:g} at torques and sensors, and stable on all
+  changed robots. radius: spectral, a sample; below 1 it settles. delay, lag:
+  what all torques bear beyond their own, -: no limit. worst: of changed robots."""
+
+
+def tables(found: Comparison) -> list[RenderableType]:
+    """A row a method, and why some have none."""
+    judged = [one.verdict for one in found.contenders if one.verdict is not None]
+    rows = [_row(one) for one in judged]
+    reasons = [(one.method, one.reason) for one in found.contenders if one.verdict is None]
+    radii = [
+        (
+            one.method,
+            f"{number(one.algebraic_loop_radius, 4)}; a delay a joint {number(one.algebraic_loop_radius_per_joint, 4)}",
+        )
+        for one in judged
+        if one.algebraic_loop_radius is not None
+    ]
+    failing = [(one.method, ", ".join(one.failed)) for one in judged if one.failed and one.stable]
+    said: list[RenderableType] = [title(found.robot, "as it runs"), "", facts([("loop", found.sensing.summary())])]
+    said += [table(COLUMNS, rows), LEGEND]
+    for heading, what in (("algebraic loop of E", radii), ("fails when changed", failing), ("no controller", reasons)):
+        said += ["", f"  {heading}:", facts(what)] if what else []
+    return [*said, "", NO_TORQUE]
+
+
+def _row(one: HardwareVerdict) -> list[str]:
+    margins = [f"{one.disk_margin_torque:.2f}", f"{one.disk_margin_sensor:.2f}"] if one.stable else ["-", "-"]
+    bears = f"{_milli(one.delay_margin_s)} {_milli(one.lag_margin_s)}" if one.stable else "-"
+    rest = ["-", "-"]
+    if one.tip_stiffness is not None and one.time_constant_s is not None:
+        rest = [f"{one.tip_stiffness:.1e}", f"{1e3 * one.time_constant_s:.1f}"]
+    good = one.has_margin and one.survives
+    mark = "*" if good else ""
+    return [f"{one.method}{mark}", f"{one.spectral_radius:.4f}", *margins, bears, f"{one.worst_radius:.4f}", *rest]
+
+
+def _milli(seconds: float | None) -> str:
+    return "-" if seconds is None else f"{1e3 * seconds:.2f}"
+
+
+def gain_tables(found: Sequence[SafeGain]) -> list[RenderableType]:
+    """The highest safe and the highest stable scale of the gains."""
+    rows = [
+        [
+            f"{one.method}{' (not below all of it)' if one.unsafe_below else ''}",
+            "none" if one.safe is None else f"{one.safe:.3g}",
+            "-" if one.safe_stiffness is None else f"{one.safe_stiffness:.3g}",
+            "none" if one.stable is None else f"{one.stable:.3g}",
+        ]
+        for one in found
+    ]
+    columns = ("method", "safe up to\n[times the gains]", "stiffness there\n[N/m]", "stable up to\n[times the gains]")
+    return ["", "  Highest gains (s Kp, root of s Kv), s from 0.001 to 100", table(columns, rows)]
+
+
+def region_lines(found: Validity) -> list[RenderableType]:
+    """How far a constant controller carries."""
+    good = found.safe_radius is not None
+    lines = [line.strip() for line in found.summary().splitlines()]
+    return ["", *(Padding(Text(line, style=GOOD if good else BAD), (0, 0, 0, 2)) for line in lines)]
