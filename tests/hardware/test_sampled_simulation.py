@@ -12,6 +12,7 @@ import flexbase as fb
 from flexbase import Gains, InputError, MissingExtra
 from flexbase.control.sampled_controller import pd_with_gain
 from flexbase.control.sampled_plant import Changed, changed_pose, sampled_plant
+from flexbase.design.hardware import controller_for
 from flexbase.dynamics.kinematics import forward
 from flexbase.errors import import_extra
 from flexbase.model.sensing import Sensing
@@ -19,7 +20,7 @@ from flexbase.simulate import builtin_held
 from flexbase.simulate.builtin import accelerations
 from flexbase.simulate.builtin_held import BuiltinHeld
 from flexbase.simulate.sampled import simulate_sampled, simulate_sampled_many
-from flexbase.simulate.sampled_result import Push
+from flexbase.simulate.sampled_result import Push, SampledRun
 from flexbase.trace.algebra import unstack
 
 TINY = 1e-7  # rad: the second-order terms of the motion are as small against the first
@@ -164,6 +165,7 @@ def test_the_papers_gain_is_unstable_and_a_softer_loop_settles(paper_pose, engin
     assert "diverged" in found.summary()
     assert found.t[-1] < 0.3
     assert simulate_sampled(soft(paper_pose, Sensing()), near, engine=engine).settled
+    assert simulate_sampled(controller_for(paper_pose, "coprime", Sensing()), near, engine=engine).settled
 
 
 def test_a_long_push_meets_the_static_stiffness(paper_pose):
@@ -266,3 +268,31 @@ def test_other_robots_and_algebraic_loops_are_refused(paper_pose):
     ideal = Sensing(compute_delay=0, accelerometer_lag=0.0)
     with pytest.raises(InputError, match="depends on the torque"):
         simulate_sampled(soft(paper_pose, ideal, E))
+
+
+def judged(paper_pose, error):
+    """A run of this tip error along x, judged from its begin."""
+    t = np.arange(len(error)) / 1000.0
+    both = np.stack([error, np.zeros(len(error))], axis=1)
+    q = np.zeros((len(error), 3))
+    return SampledRun(soft(paper_pose, Sensing()), paper_pose, t, q, q, both, both, 0.0, None, 0.99, 0, "builtin", 0)
+
+
+@pytest.mark.parametrize(
+    ("error", "settled"),
+    [
+        (1e-3 * np.exp(-np.arange(800) / 100.0), True),
+        (1e-3 * np.exp(-np.arange(800) / 400.0), False),  # 0.22 mm at the begin of the last quarter
+        (1e-8 * np.exp(np.arange(800) / 100.0), False),  # 0.03 mm, and grows
+        (2e-5 * np.sin(np.arange(800.0)), True),  # a limit cycle of counts
+        (2e-5 * np.random.default_rng(0).standard_normal(800), True),
+        (np.where(np.arange(800) == 650, 1.1e-4, 0.0), False),
+    ],
+)
+def test_settled_is_small_and_not_growing(paper_pose, error, settled):
+    assert judged(paper_pose, error).settled == settled
+
+
+def test_settling_time_is_that_of_the_exponential(paper_pose):
+    """exp(-t/100 ms) falls from 1 mm to 0.1 mm in 230.3 ms: the first sample after that."""
+    assert judged(paper_pose, 1e-3 * np.exp(-np.arange(1600) / 100.0)).settling_time_s == pytest.approx(0.231)

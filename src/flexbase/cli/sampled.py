@@ -6,12 +6,9 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from cyclopts import Group, Parameter
-from rich.console import RenderableType
 
-from flexbase.cli.digits import number as shown
 from flexbase.cli.options import option
 from flexbase.cli.sensing import SensingOptions
-from flexbase.cli.show import facts, title, verdict
 from flexbase.cli.words import Vector, numbers
 from flexbase.control.compensator import Compensator
 from flexbase.control.sampled_controller import SampledController, pd_with_gain
@@ -67,21 +64,3 @@ class SampledOptions:
         middle = 0.5 * (times["switch"] + times["end"])
         push = None if self.disturb is None else Push(self.disturb, middle, PUSH)
         return simulate_sampled(controller, start, push=push, **times)
-
-
-def tables(found: SampledRun) -> list[RenderableType]:
-    """What was run, the linear verdict, and whether the tip settles."""
-    time, size = found.settling_time_s, 1e3 * found.tolerance
-    word = "stable" if found.predicted else "unstable"
-    said = [
-        ("linear verdict", f"{word}, spectral radius {found.spectral_radius:.5f} a sample"),
-        (f"settling time after {found.judged_from:g} s", "none" if time is None else f"{shown(1e3 * time, 4)} ms"),
-        ("largest tip error after the switch", f"{shown(1e3 * found.peak_error_m, 4)} mm (or mrad)"),
-        ("peak torque", ", ".join(shown(torque, 4) for torque in found.peak_torque) + " N m (or N)"),
-        ("samples saturated", f"{found.saturated_samples} of {len(found.t)}"),
-    ]
-    heading = f"{found.controller.name} at {found.controller.sensing.rate:g} Hz, plant {found.engine}"
-    end = verdict(
-        found.settled, f"Settles below {size:g} mm", f"Does not settle below {size:g} mm", found.stopped or ""
-    )
-    return [title(found.goal.plant.name, heading), facts(said), "", end]

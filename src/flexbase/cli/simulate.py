@@ -14,7 +14,7 @@ from flexbase.cli.out import Out, check_out, write_out, written
 from flexbase.cli.pose import Elbow, Robot, compensator_of, tip_pose
 from flexbase.cli.run import tables
 from flexbase.cli.sampled import SampledOptions
-from flexbase.cli.sampled import tables as sampled_tables
+from flexbase.cli.sampled_table import tables as sampled_tables
 from flexbase.cli.sensing import SensingOptions
 from flexbase.cli.show import put
 from flexbase.cli.words import Vector, numbers

@@ -12,7 +12,7 @@ from flexbase.control.sampled_controller import SampledController
 from flexbase.plant import Pose
 from flexbase.simulate.result import SETTLED
 
-GROWS = 1.1  # factor of the error between two successive eighths, from which on it counts as growing
+GROWS = 1.5  # of the error between two quarters of the time judged: more than noise and counts make of one another
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,25 +80,26 @@ class SampledRun:
 
     @property
     def growth(self) -> float | None:
-        """Root mean square error of the last eighth of the time judged, over that of the eighth before it."""
+        """Root mean square error of the last quarter of the time judged, over that of the quarter before it."""
         late = self.error_size[self.t >= self.judged_from]
-        eighth = len(late) // 8
-        if self.diverged or eighth == 0:
+        quarter = len(late) // 4
+        if self.diverged or quarter == 0:
             return None
-        last, before = (float(np.sqrt(np.mean(part**2))) for part in (late[-eighth:], late[-2 * eighth : -eighth]))
+        last, before = (float(np.sqrt(np.mean(part**2))) for part in (late[-quarter:], late[-2 * quarter : -quarter]))
         return last / before if before > 0.0 else 1.0
 
     @property
     def last_error(self) -> float | None:
         """Largest tip error in the last quarter of the time judged."""
         late = self.error_size[self.t >= self.judged_from]
-        return None if self.diverged or len(late) < 8 else float(late[-(len(late) // 4) :].max())
+        return None if self.diverged or len(late) < 4 else float(late[-(len(late) // 4) :].max())
 
     @property
     def settled(self) -> bool:
         """Whether the tip stays within the tolerance in the last quarter of the time judged, its error not growing.
 
-        Time is judged after the switch and the push. Growing: see `growth`, from 1.1 on.
+        Time is judged after the switch and the push. Growing: half as large again as in the quarter before. A loop that
+        grows more slowly than that is only told by `spectral_radius`.
         """
         error, growth = self.last_error, self.growth
         return error is not None and growth is not None and error < self.tolerance and growth < GROWS

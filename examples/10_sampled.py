@@ -1,0 +1,23 @@
+"""The loop as hardware runs it: the paper's gain at 1 kHz with one sample of delay, and a controller made for that."""
+
+from dataclasses import replace
+
+import numpy as np
+
+import flexbase as fb
+from flexbase.control.sampled_controller import pd_with_gain
+from flexbase.design.hardware import controller_for
+from flexbase.model.sensing import TYPICAL
+
+plant = fb.load("ueda2003")
+start, goal = plant.at_tip([0.33, 0.25]), plant.at_tip([0.33, -0.25])
+printed = np.array([[0.12, 0.079], [0.079, -0.15]])
+real = replace(TYPICAL, encoder_counts=2.0**18, task_noise=5e-6, torque_limit=(500.0, 500.0))
+push = fb.Push((50.0, 0.0), start=0.45, duration=0.02)
+
+papers = pd_with_gain(goal, real, goal.arm.gains, printed, "the paper's E")
+ours = controller_for(goal, "coprime", real)
+for controller in (papers, ours):
+    for engine in ("builtin", "mujoco"):
+        run = fb.simulate_sampled(controller, start, switch=0.15, end=0.8, push=push, engine=engine)
+        print(run.summary(), end="\n\n")
