@@ -62,6 +62,9 @@ SHOWN = {
     "posture": "--tip --elbow --branch --measure --compensator --out --json",
     "rac": "--axes --hold --modes --count --compensator --out --json",
     "layout": "--targets --measure --goal --along --turn --within --elbow --branch --compensator --out --json",
+    "recommend": "--tip --joints --elbow --branch --rate --task-every --task-rate --compute-delay --task-delay "
+    "--encoder-counts --acceleration --accelerometer-lag --acceleration-filter --acceleration-noise --task-noise "
+    "--torque-limit --torque-slew --stiffness --damping --out --json",
     "study": "",
     "reproduce": "--out --json",
     "robots": "--json",

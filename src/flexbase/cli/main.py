@@ -9,30 +9,11 @@ from collections.abc import Sequence
 from cyclopts import App, Group, Parameter
 
 from flexbase import __version__
+from flexbase.cli.commands import COMMANDS
 from flexbase.cli.faults import one_line_warnings, report, silence_stdout
 from flexbase.cli.show import Screen
 
 INTERRUPTED, BROKEN_PIPE = 130, 141  # 128 and the number of the signal, as shells have it
-COMMANDS = {
-    "check": "Is the project sound? Show what it says.",
-    "modes": "Vibration modes at a pose, and whether they are positive real.",
-    "verdict": "The exact verdict: positive real, or where in frequency not.",
-    "design": "A compensator: the change of control that makes a pose safe.",
-    "hardware": "Controllers for the loop as it runs, side by side.",
-    "simulate": "Move the tip, then settle it: does the loop come to rest?",
-    "ellipsoid": "Dynamic manipulability, without and with a compensator.",
-    "map": "Measures over the tip's plane, joints, samples or parameters.",
-    "montecarlo": "How sure is a design when the plant is not known exactly?",
-    "draw": "A picture or page of a map that was written earlier.",
-    "posture": "The joints in which the arm stands best on a target.",
-    "rac": "Robust arm configurations, as curves or points.",
-    "layout": "Where to put the work, or the base.",
-    "recommend": "Which controller to use as the loop really runs, and why.",
-    "study": "Many poses: which controllers run, and do verdicts come true?",
-    "reproduce": "The paper's figures and numbers, beside what it prints.",
-    "robots": "The bundled robots.",
-    "init": "Write a commented project file to start from.",
-}
 EPILOGUE = """Examples:
   flexbase check ueda2003
   flexbase modes ueda2003 --tip 0.33,-0.25
@@ -54,7 +35,8 @@ app = App(
     result_action="return_value",
 )
 for _name, _purpose in COMMANDS.items():
-    app.command(f"flexbase.cli.{_name}:app", name=_name, help=_purpose, sort_key=list(COMMANDS).index(_name))
+    _module = _name.replace("-", "_")
+    app.command(f"flexbase.cli.{_module}:app", name=_name, help=_purpose, sort_key=list(COMMANDS).index(_name))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from cyclopts import App
+from typing import Annotated
+
+from cyclopts import App, Parameter
 
 from flexbase.cli.document import document
 from flexbase.cli.gains import GainOptions
 from flexbase.cli.options import Json
-from flexbase.cli.out import Out, check_out, write_out, written
+from flexbase.cli.out import OutFile, check_out, write_out, written
 from flexbase.cli.pose import PoseOptions, Robot
 from flexbase.cli.progress import progress_bar
+from flexbase.cli.sensing import SensingOptions
 from flexbase.cli.show import put, title
 from flexbase.plant import load
 from flexbase.study.recommend import recommend
@@ -22,6 +25,7 @@ app = App(
 
 Exit status: 0 a controller runs, 1 none does, 2 wrong input.""",
 )
+Out = Annotated[OutFile, Parameter(help="write the answer as .json")]
 
 
 @app.default
@@ -31,6 +35,7 @@ def recommend_controller(
     *,
     pose: PoseOptions = PoseOptions(),  # noqa: B008
     loop: GainOptions = GainOptions(),  # noqa: B008
+    run: SensingOptions = SensingOptions(),  # noqa: B008
     out: Out = None,
     json: Json = False,
 ) -> int:
@@ -38,7 +43,8 @@ def recommend_controller(
     check_out(out, (".json",))
     plant = load(robot)
     with progress_bar() as report:
-        found = recommend(pose.pose(plant), gains=loop.gains(plant), progress=report)
+        sensing = run.sensing(plant) if run.declared(plant) else None
+        found = recommend(pose.pose(plant), sensing=sensing, gains=loop.gains(plant), progress=report)
     content = found.to_dict()
     write_out(out, "recommend", found, content)
     put(document("recommend", content)) if json else put(
