@@ -204,16 +204,15 @@ def agreement_study(
 def explain(case: Case) -> dict[str, Any]:
     """Why a verdict did not come true: watched again from a hundredth of the nudge, four times as long."""
     again = watch(case, 0.01 * NUDGE, 4.0 * LONGEST)
-    said = f"promised growth {case.rate:+.4g} 1/s, measured {again.growth:+.4g} 1/s"
+    measured = float(np.exp(again.growth / case.controller.sensing.rate))
+    said = f"spectral radius promised {case.radius:.7f}, measured {measured:.7f} a sample"
     if again.settled == case.stable:
-        why = f"the verdict comes true from a smaller nudge, watched longer: {said}"
-    elif abs(case.rate) * LONGEST < 1.0:
-        why = f"the border itself: the time constant of {1.0 / abs(case.rate):.3g} s is longer than the watch; {said}"
-    elif abs(again.growth - case.rate) < 0.05 * case.controller.sensing.rate * NEAR:
-        why = f"the border itself: {said}, apart by less than the two models' difference"
+        why = f"it comes true from a hundredth of the nudge, watched four times as long: {said}"
+    elif max(abs(case.radius - 1.0), abs(measured - 1.0)) < NEAR:
+        why = f"the border itself, within {NEAR:g} of 1: {said}"
     else:
         why = f"unexplained: {said}"
-    return {"why": why, "time_constant_s": 1.0 / abs(case.rate), "watched_again": asdict(again)}
+    return {"why": why, "time_constant_s": 1.0 / max(abs(case.rate), 1e-12), "watched_again": asdict(again)}
 
 
 def _balanced(
