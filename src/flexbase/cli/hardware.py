@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 from cyclopts import App, Parameter
 
+from flexbase.cli.at_one_pose import gain_tables, region_lines
 from flexbase.cli.document import document
 from flexbase.cli.gains import GainOptions
 from flexbase.cli.options import Json, option
@@ -14,7 +15,7 @@ from flexbase.cli.pose import PoseOptions, Robot
 from flexbase.cli.progress import progress_bar
 from flexbase.cli.sensing import SensingOptions
 from flexbase.cli.show import put
-from flexbase.cli.verdicts import gain_tables, region_lines, tables
+from flexbase.cli.verdicts import tables
 from flexbase.cli.words import Names, names, number
 from flexbase.design.hardware import HARDWARE_METHODS
 from flexbase.errors import InputError

@@ -1,19 +1,13 @@
-"""Verdicts on sampled controllers side by side, the highest safe gains, and where one stays valid: as tables."""
+"""Verdicts on sampled controllers side by side, as a table."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from rich.console import RenderableType
-from rich.padding import Padding
-from rich.text import Text
 
 from flexbase.cli.digits import number
-from flexbase.cli.show import BAD, GOOD, facts, table, title
+from flexbase.cli.show import facts, table, title
 from flexbase.control.hardware import GOOD_MARGIN, HardwareVerdict
 from flexbase.study.comparison import Comparison
-from flexbase.study.safe_gain import SafeGain
-from flexbase.study.validity import Validity
 
 COLUMNS = (
     "method",
@@ -25,11 +19,11 @@ COLUMNS = (
     "stiff\n[N/m]",
     "tau\n[ms]",
 )
-NO_TORQUE = """  A robot that takes positions only cannot run these laws: they are torques. What
-  it can run is admittance, well below the bandwidth of its own position loop."""
-LEGEND = f"""  * safe: stable, disk margins of {GOOD_MARGIN:g} at torques and sensors, and stable on all
-  changed robots. radius: spectral, a sample; below 1 it settles. delay, lag:
-  what all torques bear beyond their own, -: no limit. worst: of changed robots."""
+NO_TORQUE = """  A robot that takes positions only cannot run these laws: they are torques. It
+  can run admittance, well below the bandwidth of its own position loop."""
+LEGEND = f"""  * safe: stable, disk margins of {GOOD_MARGIN:g} at torques and sensors, and on all
+  changed robots stable. radius: spectral, a sample; below 1 it settles. delay,
+  lag: what all torques bear beyond their own, -: no limit. worst: when changed."""
 
 
 def tables(found: Comparison) -> list[RenderableType]:
@@ -66,25 +60,3 @@ def _row(one: HardwareVerdict) -> list[str]:
 
 def _milli(seconds: float | None) -> str:
     return "-" if seconds is None else f"{1e3 * seconds:.2f}"
-
-
-def gain_tables(found: Sequence[SafeGain]) -> list[RenderableType]:
-    """The highest safe and the highest stable scale of the gains."""
-    rows = [
-        [
-            f"{one.method}{' (not below all of it)' if one.unsafe_below else ''}",
-            "none" if one.safe is None else f"{one.safe:.3g}",
-            "-" if one.safe_stiffness is None else f"{one.safe_stiffness:.3g}",
-            "none" if one.stable is None else f"{one.stable:.3g}",
-        ]
-        for one in found
-    ]
-    columns = ("method", "safe up to\n[times the gains]", "stiffness there\n[N/m]", "stable up to\n[times the gains]")
-    return ["", "  Highest gains (s Kp, root of s Kv), s from 0.001 to 100", table(columns, rows)]
-
-
-def region_lines(found: Validity) -> list[RenderableType]:
-    """How far a constant controller carries."""
-    good = found.safe_radius is not None
-    lines = [line.strip() for line in found.summary().splitlines()]
-    return ["", *(Padding(Text(line, style=GOOD if good else BAD), (0, 0, 0, 2)) for line in lines)]

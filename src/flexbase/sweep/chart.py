@@ -177,8 +177,9 @@ def _layers(plane: Any) -> Iterator[Layer]:
         variable = plane[name]
         unit, zero_is = str(variable.attrs["units"]), variable.attrs.get("zero_is")
         line = name  # or, where the measure only touches zero, its companion
-        if zero_is == MEASURES[name].zero_is and MEASURES[name].zero_line in plane:
-            line = MEASURES[name].zero_line or name
+        known = MEASURES.get(name)
+        if known is not None and zero_is == known.zero_is and known.zero_line in plane:
+            line = known.zero_line or name
         modes = range(plane.sizes[MODE]) if MODE in variable.dims else (None,)
         for mode in modes:
             values, zeros = (

@@ -13,6 +13,7 @@ from flexbase.sweep.status import STATUS, flags
 from flexbase.sweep.store import FINISHED, Field
 
 MODE = "mode"
+MEASURED = "measured"  # attribute of a measure that no registry knows, such as a verdict's
 COMPANION = "companion"  # attribute of measures that nobody asked for: they draw the zero line of another
 
 

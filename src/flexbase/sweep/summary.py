@@ -12,7 +12,7 @@ import numpy as np
 from flexbase.checks import Array
 from flexbase.errors import InputError
 from flexbase.measures import MEASURES
-from flexbase.sweep.layout import COMPANION, MODE
+from flexbase.sweep.layout import COMPANION, MEASURED, MODE
 from flexbase.sweep.status import statuses_of
 
 PART = 1 << 22  # cells of a store that are looked at together
@@ -30,8 +30,9 @@ class Extent(NamedTuple):
 
 
 def measures_of(dataset: Any) -> list[str]:
-    """Names of the measures that were asked for."""
-    return [name for name in dataset.data_vars if name in MEASURES and COMPANION not in dataset[name].attrs]
+    """Names of the measures that were asked for: registered ones, and those that say so themselves."""
+    named = (name for name in dataset.data_vars if name in MEASURES or MEASURED in dataset[name].attrs)
+    return [name for name in named if COMPANION not in dataset[name].attrs]
 
 
 def extents(dataset: Any) -> list[Extent]:

@@ -1,0 +1,72 @@
+"""Maps and paths of verdicts: cell by cell the single verdict; stopped and gone on with; refused where they differ."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import flexbase as fb
+from flexbase.control.hardware import hardware_verdict
+from flexbase.design.hardware import controller_for
+from flexbase.errors import InputError, Unreachable
+from flexbase.model.sensing import Sensing
+from flexbase.study import hardware_map as module
+from flexbase.study.hardware_map import MEASURES, hardware_map, hardware_path
+
+FAST = Sensing(rate=4000.0)
+
+
+def test_cells_are_single_verdicts(paper: fb.Plant) -> None:
+    found = hardware_map(paper, "none", (4, 3), sensing=FAST, bounds=(-0.1, 0.5, -0.4, 0.4), workers=1)
+    assert found["spectral_radius"].dims == ("y", "x")
+    reached = 0
+    for j, y in enumerate(found["y"].values):
+        for i, x in enumerate(found["x"].values):
+            try:
+                pose = paper.at_tip([x, y])
+            except Unreachable:
+                assert found["status"].values[j, i] == 1
+                continue
+            reached += 1
+            expected = hardware_verdict(controller_for(pose, "none", FAST), brief=True)
+            for name in MEASURES:
+                value = getattr(expected, name)
+                assert found[name].values[j, i] == pytest.approx(np.nan if value is None else value, nan_ok=True)
+    assert reached >= 6
+    assert fb.plot(found).axes
+
+
+def test_path_and_given_gain(paper: fb.Plant, paper_pose: fb.Pose) -> None:
+    comp = fb.design(paper_pose, natural_frequency=346.8)
+    rows = hardware_path(paper, [[0.33, -0.25], [2.0, 2.0]], sensing=FAST, compensator=comp, workers=1)
+    assert [row["status"] for row in rows] == ["ok", "out of reach"]
+    assert rows[0]["spectral_radius"] == pytest.approx(0.99578, abs=1e-4)  # stable with E, 1.0018 without
+    assert np.isnan(rows[1]["spectral_radius"])
+    with pytest.raises(InputError, match="path: 3 values given, 2 needed"):
+        hardware_path(paper, [[1.0, 2.0, 3.0]])
+
+
+def test_stopped_and_gone_on_with(paper: fb.Plant, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An interruption costs its block; the second run computes the others alone; another recipe is refused."""
+    monkeypatch.setattr(module, "BLOCK", 4)
+    store, seen = tmp_path / "m.zarr", []
+    options = {"sensing": FAST, "bounds": (0.1, 0.5, -0.4, 0.4), "store": store, "workers": 1}
+
+    def stop(done: int, total: int) -> None:
+        if done >= 4:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        hardware_map(paper, "none", (4, 3), progress=stop, **options)
+    found = hardware_map(
+        paper, "none", (4, 3), resume=True, progress=lambda done, total: seen.append((done, total)), **options
+    )
+    assert seen == [(4, 12), (8, 12), (12, 12)]
+    whole = hardware_map(paper, "none", (4, 3), **{**options, "store": None})
+    np.testing.assert_array_equal(found["spectral_radius"].values, whole["spectral_radius"].values)
+    with pytest.raises(InputError, match="sensing"):
+        hardware_map(paper, "none", (4, 3), resume=True, **{**options, "sensing": Sensing(rate=2000.0)})
+    with pytest.raises(InputError, match="nothing to resume"):
+        hardware_map(paper, "none", (4, 3), resume=True, **{**options, "store": None})
