@@ -48,7 +48,15 @@ SHOWN = {
     "check": "--tip --joints --elbow --branch --json",
     "verdict": "--tip --joints --elbow --branch --compensator --bandwidth --out --json",
     "design": "--tip --joints --elbow --branch --method --natural-frequency --highest-frequency --objective --radius "
-    "--margin --derivatives --step --iterations --seed --stiffness --damping --out --json",
+    "--margin --derivatives --step --iterations --seed --stiffness --damping --rate --task-every --task-rate "
+    "--compute-delay --task-delay --encoder-counts --acceleration --accelerometer-lag --acceleration-filter "
+    "--acceleration-noise --task-noise --torque-limit --torque-slew --out --json",
+    "hardware": "--tip --joints --elbow --branch --method --methods --stiffness --damping --rate "
+    "--task-every --task-rate --compute-delay --task-delay --encoder-counts --acceleration --accelerometer-lag "
+    "--acceleration-filter --acceleration-noise --task-noise --torque-limit --torque-slew --safe-gain --region --half-width --out --json",
+    "hardware-map": "--method --compensator --shape --bounds --hold --elbow --branch --path --stiffness --damping "
+    "--rate --task-every --task-rate --compute-delay --task-delay --encoder-counts --acceleration --accelerometer-lag "
+    "--acceleration-filter --acceleration-noise --task-noise --torque-limit --torque-slew --resume --out --json",
     "simulate": "--from --to --elbow --branch --compensator --switch --end --trajectory --compensate --interval "
     "--self-motion --plant --sampled --method --disturb --rate --task-every --task-rate --compute-delay --task-delay "
     "--encoder-counts --acceleration --accelerometer-lag --acceleration-filter --acceleration-noise --task-noise "
