@@ -22,6 +22,7 @@ from flexbase.model.task import Gains
 from flexbase.plant import Pose
 
 RATES = (250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0)  # Hz: where a change of the answer is looked for
+RIVALS = 4  # methods that are tried at other rates and with other sensors, beside the first of the registry
 CLOSE = 0.8  # of the best stiffness: a simpler method that reaches it is preferred
 ERRORS = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5)  # of the base stiffness: how wrong the model may be
 
@@ -57,7 +58,7 @@ class Recommendation:
     """The answer at one pose.
 
     best : the recommended candidate, or None where nothing is stable
-    changes : rate [Hz] or sensor -> the method that would be recommended there, None for none
+    changes : rate [Hz] or sensor -> which of the best few here would be recommended there, None for none
     """
 
     robot: str

@@ -22,7 +22,7 @@ ALL = (*FIRST_FREE, MATRICES)
 
 
 @hardware_method(
-    "constant", "constant gain matrices made for the sampled loop: no states but filters, no accelerometer"
+    "constant", "constant gain matrices made for the sampled loop: no states but filters"
 )
 def constant(
     pose: Pose,
