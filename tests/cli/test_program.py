@@ -53,7 +53,8 @@ SHOWN = {
     "--acceleration-noise --task-noise --torque-limit --torque-slew --out --json",
     "hardware": "--tip --joints --elbow --branch --method --methods --stiffness --damping --rate "
     "--task-every --task-rate --compute-delay --task-delay --encoder-counts --acceleration --accelerometer-lag "
-    "--acceleration-filter --acceleration-noise --task-noise --torque-limit --torque-slew --safe-gain --region --half-width --out --json",
+    "--acceleration-filter --acceleration-noise --task-noise --torque-limit --torque-slew "
+    "--safe-gain --region --half-width --out --json",
     "hardware-map": "--method --compensator --shape --bounds --hold --elbow --branch --path --stiffness --damping "
     "--rate --task-every --task-rate --compute-delay --task-delay --encoder-counts --acceleration --accelerometer-lag "
     "--acceleration-filter --acceleration-noise --task-noise --torque-limit --torque-slew --resume --out --json",
