@@ -52,7 +52,7 @@ def test_delay_margin_is_where_the_delayed_loop_turns(loop: SampledController) -
 
 
 def test_disk_margin_is_a_promise_and_nearly_tight(loop: SampledController) -> None:
-    """Gains inside the disk never destabilise; at its border some pair of gains and phases puts a pole on the circle."""
+    """Gains inside the disk never destabilise; at its border some gains and phases put a pole on the circle."""
     alpha, omega = disk_margin(sensitivities(loop.pose, loop)[0])
     low, high = (2.0 - alpha) / (2.0 + alpha), (2.0 + alpha) / (2.0 - alpha)
     for gains in np.random.default_rng(0).uniform(low, high, (200, 2)):
@@ -71,7 +71,7 @@ def test_disk_margin_is_a_promise_and_nearly_tight(loop: SampledController) -> N
 
 
 def test_structured_norm_bounds() -> None:
-    """Between the spectral radius and the norm; nearly unchanged by a scaling of the channels; equal to it when diagonal."""
+    """Between the spectral radius and the norm; nearly unchanged by scaled channels; equal to it when diagonal."""
     rng = np.random.default_rng(1)
     T = rng.normal(size=(30, 3, 3)) + 1j * rng.normal(size=(30, 3, 3))
     size = structured_norm(T)
@@ -107,7 +107,7 @@ def test_changes_change_the_robot(paper_pose: fb.Pose) -> None:
     heavier = changed_pose(paper_pose, Changed("", last_link=1.1))
     assert heavier.M[2, 2] == pytest.approx(1.1 * paper_pose.M[2, 2], rel=1e-12)
     turned = changed_pose(paper_pose, Changed("", joints=((1, 0.1),)))
-    assert turned.q == pytest.approx(paper_pose.q + [0.0, 0.0, 0.1])
+    assert turned.q == pytest.approx(paper_pose.q + np.array([0.0, 0.0, 0.1]))
 
 
 def test_verdict(loop: SampledController, paper_pose: fb.Pose) -> None:

@@ -1,0 +1,22 @@
+"""From positive real to running: what becomes of the paper's compensator in a sampled loop, and what runs instead."""
+
+import flexbase as fb
+from flexbase.control.hardware import hardware_verdict
+from flexbase.design.hardware import controller_for
+from flexbase.model.sensing import Sensing
+from flexbase.study.recommend import recommend
+
+# The paper's pose: ideal acceleration makes the plant positive real ...
+pose = fb.load("ueda2003").at_tip([0.33, -0.25])
+compensator = fb.design(pose, method="exact", natural_frequency=346.8)
+print(f"ideal loop: positive real with E is {fb.modes(pose, compensator).positive_real}")
+
+# ... and one sample of delay on either side takes it away, at the rates that robots have.
+for rate in (1000.0, 4000.0):
+    for method in ("none", "exact", "coprime"):
+        print(hardware_verdict(controller_for(pose, method, Sensing(rate=rate)), brief=True).summary())
+
+# Six lines to act on, for the paper's arm and for a UR5e on its mobile platform.
+for here in (pose, fb.load("ur5e-platform").at([0.0, -1.2, 1.6, -0.4, 1.5, 0.0])):
+    print(f"\n{here.plant.name} at {here.tip.round(3).tolist()}")
+    print(recommend(here, methods=("none", "exact", "convex", "coprime")).summary())
