@@ -97,8 +97,12 @@ def checked_sensing(sensing: Sensing, n: int, where: str = "sensing, ") -> Sensi
             f"{where}acceleration_filter: {sensing.acceleration_filter:g} Hz is not below half the rate, "
             f"{0.5 * sensing.rate:g} Hz. Give a lower corner or a higher rate."
         )
-    limits = {name: _limits(where, name, getattr(sensing, name), n) for name in ("torque_limit", "torque_slew")}
-    return replace(sensing, rate=float(sensing.rate), **limits)
+    return replace(
+        sensing,
+        rate=float(sensing.rate),
+        torque_limit=_limits(where, "torque_limit", sensing.torque_limit, n),
+        torque_slew=_limits(where, "torque_slew", sensing.torque_slew, n),
+    )
 
 
 def _check_range(where: str, name: str, value: Any, low: float, high: float, unit: str, zero: bool = False) -> None:

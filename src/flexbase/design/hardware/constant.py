@@ -21,9 +21,7 @@ FIRST_FREE = ("E", "damping", "joint-damping")
 ALL = (*FIRST_FREE, MATRICES)
 
 
-@hardware_method(
-    "constant", "constant gain matrices made for the sampled loop: no states but filters"
-)
+@hardware_method("constant", "constant gain matrices made for the sampled loop: no states but filters")
 def constant(
     pose: Pose,
     sensing: Sensing,

@@ -46,6 +46,7 @@ STAGES = (
     Stage(3.0, 60.0, ((0.85, 1.2), (1.0, 0.7), (0.85, 0.0), (0.92, 0.3))),
     # where the base mode is strong: tip error alone, which a slow gain does not turn against the joints
     Stage(10.0, 20.0, ((1.0, 0.0), (0.9, 0.0), (0.85, 0.15))),
+    Stage(10.0, 10.0, ((1.0, 0.0), (0.9, 0.0))),
     # where the arm shakes a base that is hardly damped: the joints, beside which the tip error counts little
     Stage(3.0, 60.0, ((1.0, 3.0), (1.0, 10.0), (1.0, 30.0))),
 )
