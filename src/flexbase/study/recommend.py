@@ -101,7 +101,7 @@ class Recommendation:
         verdict, best = self.best.verdict, self.best
         others = [one for one in self.candidates if one is not best]
         return [
-            f"Use: {best.method}, {best.purpose} ({clock}, {said}).",
+            f"{'Use' if best.grade == 3 else 'Use with care'}: {best.method}, {best.purpose} ({clock}, {said}).",
             f"Why: {_merit(best)}; disk margins {verdict.disk_margin_torque:.2f} at torques, "
             f"{verdict.disk_margin_sensor:.2f} at sensors. " + _comparison(best, others),
             f"Cost: static tip stiffness {verdict.tip_stiffness:.3g} N/m, time constant "
