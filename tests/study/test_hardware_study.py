@@ -10,7 +10,7 @@ import flexbase as fb
 from flexbase.control.hardware import hardware_verdict
 from flexbase.design.hardware import controller_for
 from flexbase.model.sensing import Sensing
-from flexbase.study.hardware import Setting, hardware_study, wilson
+from flexbase.study.hardware import Setting, hardware_study, share_interval
 from flexbase.study.workspace import random_poses
 
 FAST, SLOW = Setting(4000.0, 1.0), Setting(1000.0, 1.0)
@@ -18,8 +18,8 @@ FAST, SLOW = Setting(4000.0, 1.0), Setting(1000.0, 1.0)
 
 @pytest.mark.parametrize(("hits", "trials"), [(0, 10), (3, 10), (10, 10), (380, 400)])
 def test_intervals_are_scipys(hits: int, trials: int) -> None:
-    expected = binomtest(hits, trials).proportion_ci(method="wilson")
-    assert wilson(hits, trials) == pytest.approx((expected.low, expected.high), abs=1e-12)
+    expected = binomtest(hits, trials).proportion_ci(method="exact")
+    assert share_interval(hits, trials) == pytest.approx((expected.low, expected.high), abs=1e-12)
 
 
 def test_rows_count_verdicts(paper: fb.Plant) -> None:

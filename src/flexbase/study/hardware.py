@@ -19,6 +19,7 @@ from flexbase.linear.disk_margin import disk_margin
 from flexbase.model.sensing import TYPICAL, Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Plant, Pose
+from flexbase.study.montecarlo.interval import probability_interval
 from flexbase.study.processes import in_processes
 from flexbase.study.workspace import random_poses
 
@@ -31,7 +32,6 @@ class Setting(NamedTuple):
 
 
 SETTINGS = tuple(Setting(*pair) for pair in ((1e3, 0.25), (1e3, 1.0), (1e3, 4.0), (4e3, 1.0), (4e3, 4.0)))
-CONFIDENCE = 1.959963984540054  # standard deviations of a 95 % interval
 
 
 class Outcome(NamedTuple):
@@ -51,7 +51,7 @@ class Row:
     margin_share : stable with both margins; perturbed_share : stable for the nominal and every changed robot
     complete_share : all three at once; no_design_share : poses where the method finds no controller
     tip_stiffness : median of the smallest static stiffness where stable [N/m]; None where it never is
-    *_interval : Wilson's 95 % intervals
+    *_interval : 95 % intervals, exact
     """
 
     method: str
@@ -181,16 +181,14 @@ def _row(name: str, setting: Setting, outcomes: Sequence[Outcome]) -> Row:
         float(np.mean(complete)),
         float(np.mean([not one.designed for one in outcomes])),
         float(np.median(stiffness)) if stiffness else None,
-        wilson(sum(stable), count),
-        wilson(sum(margin), count),
-        wilson(sum(perturbed), count),
-        wilson(sum(complete), count),
+        share_interval(sum(stable), count),
+        share_interval(sum(margin), count),
+        share_interval(sum(perturbed), count),
+        share_interval(sum(complete), count),
     )
 
 
-def wilson(successes: int, trials: int) -> tuple[float, float]:
-    """Wilson's 95 % interval of a share."""
-    z2, p = CONFIDENCE**2, successes / trials
-    centre = (p + z2 / (2.0 * trials)) / (1.0 + z2 / trials)
-    half = CONFIDENCE / (1.0 + z2 / trials) * float(np.sqrt(p * (1.0 - p) / trials + z2 / (4.0 * trials**2)))
-    return max(0.0, centre - half), min(1.0, centre + half)
+def share_interval(hits: int, trials: int) -> tuple[float, float]:
+    """Clopper and Pearson's 95 % interval of a share."""
+    lower, upper = probability_interval(np.array(hits), trials)
+    return float(lower), float(upper)
