@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch
 
 from flexbase.report.style import BLUE, INK, ORANGE, PALE, SKY, new_figure
@@ -18,9 +19,11 @@ def draw_validity(found: Validity) -> Figure:
     figure = new_figure(5.2, 5.0)
     ax = figure.add_subplot()
     ax.pcolormesh(found.x, found.y, found.grade, cmap=ListedColormap(COLOURS), vmin=-0.5, vmax=3.5, shading="nearest")
-    for radius, style in ((found.safe_radius, "-"), (found.stable_radius, "--")):
+    disks = []
+    for radius, style, what in ((found.safe_radius, "-", "safe"), (found.stable_radius, "--", "stable")):
         if radius:
             ax.add_patch(Circle(found.tip, radius, fill=False, color=INK, linestyle=style, linewidth=1.0))
+            disks.append(Line2D([], [], color=INK, linestyle=style, linewidth=1.0, label=f"all {what} within"))
     ax.plot(*found.tip, "x", color=INK)
     half = 0.5 * (found.x[1] - found.x[0]), 0.5 * (found.y[1] - found.y[0])
     ax.set(
@@ -32,6 +35,6 @@ def draw_validity(found: Validity) -> Figure:
     )
     present = [code for code in MEANINGS if np.any(found.grade == code)]
     handles = [Patch(facecolor=COLOURS[code], edgecolor=INK, linewidth=0.5, label=MEANINGS[code]) for code in present]
-    figure.legend(handles=handles, loc="outside lower center", ncols=2)
+    figure.legend(handles=[*handles, *disks], loc="outside lower center", ncols=2)
     ax.set_title(f"{found.robot}, method {found.method}: {found.what} made at the cross", loc="left")
     return figure
