@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.artist import Artist
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch
 
@@ -19,7 +20,7 @@ def draw_validity(found: Validity) -> Figure:
     figure = new_figure(5.2, 5.0)
     ax = figure.add_subplot()
     ax.pcolormesh(found.x, found.y, found.grade, cmap=ListedColormap(COLOURS), vmin=-0.5, vmax=3.5, shading="nearest")
-    disks = []
+    disks: list[Artist] = []
     for radius, style, what in ((found.safe_radius, "-", "safe"), (found.stable_radius, "--", "stable")):
         if radius:
             ax.add_patch(Circle(found.tip, radius, fill=False, color=INK, linestyle=style, linewidth=1.0))
