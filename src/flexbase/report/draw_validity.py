@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
-from matplotlib.artist import Artist
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch
 
@@ -20,11 +19,14 @@ def draw_validity(found: Validity) -> Figure:
     figure = new_figure(5.2, 5.0)
     ax = figure.add_subplot()
     ax.pcolormesh(found.x, found.y, found.grade, cmap=ListedColormap(COLOURS), vmin=-0.5, vmax=3.5, shading="nearest")
-    disks: list[Artist] = []
-    for radius, style, what in ((found.safe_radius, "-", "safe"), (found.stable_radius, "--", "stable")):
+    disks = [
+        (found.safe_radius, Line2D([], [], color=INK, linestyle="-", linewidth=1.0, label="all safe within")),
+        (found.stable_radius, Line2D([], [], color=INK, linestyle="--", linewidth=1.0, label="all stable within")),
+    ]
+    for radius, key in disks:
         if radius:
-            ax.add_patch(Circle(found.tip, radius, fill=False, color=INK, linestyle=style, linewidth=1.0))
-            disks.append(Line2D([], [], color=INK, linestyle=style, linewidth=1.0, label=f"all {what} within"))
+            circle = Circle(found.tip, radius, fill=False, color=INK, linestyle=key.get_linestyle(), linewidth=1.0)
+            ax.add_patch(circle)
     ax.plot(*found.tip, "x", color=INK)
     half = 0.5 * (found.x[1] - found.x[0]), 0.5 * (found.y[1] - found.y[0])
     ax.set(
@@ -36,6 +38,6 @@ def draw_validity(found: Validity) -> Figure:
     )
     present = [code for code in MEANINGS if np.any(found.grade == code)]
     handles = [Patch(facecolor=COLOURS[code], edgecolor=INK, linewidth=0.5, label=MEANINGS[code]) for code in present]
-    figure.legend(handles=[*handles, *disks], loc="outside lower center", ncols=2)
+    figure.legend(handles=[*handles, *(key for radius, key in disks if radius)], loc="outside lower center", ncols=2)
     ax.set_title(f"{found.robot}, method {found.method}: {found.what} made at the cross", loc="left")
     return figure
