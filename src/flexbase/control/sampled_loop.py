@@ -10,8 +10,11 @@ from flexbase.checks import Array
 from flexbase.control.sampled_controller import SampledController
 from flexbase.control.sampled_plant import sampled_plant
 from flexbase.linear.discrete import Discrete, delay, feedback, series, side_by_side, spectral_radius, static
+from flexbase.linear.harmonic import periodic
 from flexbase.model.sensing import Sensing
 from flexbase.plant import Pose
+
+LIFTED = 40  # samples in a period up to which margins are exact: some seconds there
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,14 +64,20 @@ def _held(plant: Discrete, k: int, hold: bool = False) -> Discrete:
 def sensitivities(pose: Pose, controller: SampledController) -> tuple[Discrete, Discrete]:
     """S = (I + L)^-1 at the torque commands, and at the sensors that the controller uses.
 
-    With a slower task sensor its hold is replaced by the delay that it costs on average, (task_every - 1)/2 samples,
-    rounded up.
+    With a slower task sensor both are periodic, and the sensor's value counts as the controller gets it, held; beyond
+    `LIFTED` samples a period, where that takes too long, its hold counts as its mean delay.
     """
-    sensing = controller.sensing
     n, k = pose.arm.n, pose.arm.k
     used = [i for i in range(k + 2 * n) if _uses(controller.system, i)]
-    plant, system = plant_at_one_rate(pose, sensing).select(used), controller.system.select(inputs=used)
-    return _sensitivity(plant, system), _sensitivity(system, plant)
+    system = controller.system.select(inputs=used)
+    sensing = controller.sensing
+    lifted = sensing.task_every <= LIFTED
+    period = plants_in_a_period(pose, sensing) if lifted else [plant_at_one_rate(pose, sensing)]
+    plants = [one.select(used, list(range(n))) for one in period]
+    return (
+        periodic([_sensitivity(one, system) for one in plants]),
+        periodic([_sensitivity(system, one) for one in plants]),
+    )
 
 
 def _sensitivity(plant: Discrete, controller: Discrete) -> Discrete:
@@ -79,7 +88,10 @@ def _sensitivity(plant: Discrete, controller: Discrete) -> Discrete:
 
 
 def loop_gain(pose: Pose, controller: SampledController) -> Discrete:
-    """What a torque command becomes once around the loop, n x n: the loop is u = L u."""
+    """What a torque command becomes once around the loop, n x n: the loop is u = L u.
+
+    A slower task sensor counts as the mean delay of its hold.
+    """
     return series(plant_at_one_rate(pose, controller.sensing), controller.system)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -34,9 +35,7 @@ def disk_margin(sensitivity: Discrete) -> DiskMargin:
     maximum is looked for on a grid and then refined; between grid points poles are not missed, since their frequencies
     are on it.
     """
-    shifted = Discrete(
-        sensitivity.A, sensitivity.B, sensitivity.C, sensitivity.D - 0.5 * np.eye(len(sensitivity.D)), sensitivity.step
-    )
+    shifted = replace(sensitivity, D=sensitivity.D - 0.5 * np.eye(len(sensitivity.D)))
     frequencies = grid_of(sensitivity)
     sizes = structured_norm(shifted.transfer_function(frequencies))
     top = int(np.argmax(sizes))
