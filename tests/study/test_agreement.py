@@ -12,8 +12,10 @@ import flexbase as fb
 from flexbase import InputError
 from flexbase.control.sampled_loop import close_loop
 from flexbase.study import agreement as study
-from flexbase.study.agreement import Agreement, agreement_study, explain
-from flexbase.study.agreement_case import Outcome, _driven, draw_case, growth_of, watch
+from flexbase.study import agreement_move
+from flexbase.study.agreement import Agreement, agreement_study
+from flexbase.study.agreement_case import Outcome, _driven, draw_case
+from flexbase.study.agreement_nudge import explain, growth_of, watch
 
 pytest.importorskip("mujoco")
 
@@ -82,7 +84,7 @@ def test_rates_are_counted_by_outcome(small):
     """Two of three that settle called unstable; one of one that does not called stable."""
     cases = [replace(small.cases[0], number=i, radius=radius) for i, radius in enumerate((1.1, 1.2, 0.9, 0.8))]
     outcomes = [Outcome(settled, "slope", 1.0, -1.0) for settled in (True, True, True, False)]
-    found = Agreement("x", 0, tuple(cases), tuple(outcomes), 0, 0)
+    found = Agreement("x", "nudge", 0, tuple(cases), tuple(outcomes), 0, 0)
     assert found.agreement == 0.25
     assert found.false_unstable_rate == pytest.approx(2 / 3)
     assert found.false_stable_rate == 1.0
@@ -121,3 +123,35 @@ def test_wrong_words_are_named(paper):
     with pytest.raises(InputError, match="poses"):
         agreement_study(paper, poses=0)
     assert fb.agreement_study is agreement_study
+
+
+@pytest.fixture(scope="module")
+def moved(paper):
+    return agreement_study(paper, poses=10, trial="move", methods=QUICK, workers=1)
+
+
+def test_moves_are_the_same_controllers_with_noise_and_limits(moved, paper):
+    """Counts and limits are drawn, all else is the nudge's. Nine of ten verdicts come true, the rest is explained.
+
+    The limits are so tight that a few stable loops do not come to rest.
+    """
+    nudged = agreement_study(paper, poses=10, methods=QUICK, workers=1)
+    for one, other in zip(moved.cases, nudged.cases, strict=True):
+        assert one.radius == pytest.approx(other.radius, rel=1e-6)
+        assert one.controller.sensing.encoder_counts is not None
+        assert other.controller.sensing.encoder_counts is None
+        assert min(one.controller.sensing.torque_limit) > 0.0
+    found = moved.to_dict()
+    assert found["trial"] == "move"
+    assert found["agreement"] >= 0.9
+    assert all("true of a nudge" in one["explanation"]["why"] for one in found["disagreements"])
+    assert {case["seen"] for case in found["cases"]} <= {"at rest", "away", "diverged"}
+
+
+def test_what_takes_a_verdict_away_is_named(moved):
+    """Drives that can hardly move the arm: a stable loop stays away, and it is the limits that explain it."""
+    case = next(one for one in moved.cases if one.stable)
+    weak = replace(case.controller.sensing, torque_limit=(1e-3, 1e-3), torque_slew=(1.0, 1.0))
+    feeble = replace(case, controller=replace(case.controller, sensing=weak))
+    assert not agreement_move.watch(feeble).settled
+    assert "limits" in agreement_move.explain(feeble)["why"]

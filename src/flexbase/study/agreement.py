@@ -7,8 +7,8 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field
-from typing import Any
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -16,27 +16,50 @@ from flexbase.checks import choose
 from flexbase.design.hardware import HARDWARE_METHODS
 from flexbase.errors import InputError, import_extra
 from flexbase.plant import Plant, Pose
-from flexbase.study.agreement_case import LONGEST, NUDGE, Case, Outcome, draw_case, watch
+from flexbase.study import agreement_move, agreement_nudge
+from flexbase.study.agreement_case import Case, Outcome, draw_case
+from flexbase.study.agreement_nudge import NEAR
 from flexbase.study.processes import one_blas_thread
 from flexbase.study.workspace import random_poses
 from flexbase.trace.kernel import cores
 
 FULL = 0.55  # of the poses: a class with so many takes no more, and its poses draw again
 ATTEMPTS = 40  # draws a pose
-NEAR = 1e-3  # of 1: spectral radii that count as borderline
 Progress = Callable[[str, int, int], None]
 Mapper = Callable[[Callable[[Any], Any], Sequence[Any]], Iterator[Any]]
+
+
+class Trial(NamedTuple):
+    """How a verdict is put to the test: what is added to a drawn case, how it ends, what explains a verdict that fails.
+
+    prepared : case and seed to case
+    """
+
+    prepared: Callable[[Case, int], Case]
+    watch: Callable[[Case], Outcome]
+    explain: Callable[[Case], dict[str, Any]]
+
+
+def _as_drawn(case: Case, seed: int) -> Case:
+    return case
+
+
+TRIALS = {
+    "nudge": Trial(_as_drawn, agreement_nudge.watch, agreement_nudge.explain),
+    "move": Trial(agreement_move.prepared, agreement_move.watch, agreement_move.explain),
+}
 
 
 @dataclass(frozen=True, eq=False)
 class Agreement:
     """Verdicts and outcomes, case by case.
 
-    redrawn : draws whose class was full; undesigned : draws whose method had no design
+    trial : of TRIALS; redrawn : draws whose class was full; undesigned : draws whose method had no design
     explained : number of a case that disagrees -> why
     """
 
     robot: str
+    trial: str
     seed: int
     cases: tuple[Case, ...]
     outcomes: tuple[Outcome, ...]
@@ -76,7 +99,7 @@ class Agreement:
 
     @property
     def growth_error(self) -> float:
-        """Median difference of measured and promised growth, over the promised one."""
+        """Median difference of measured and promised growth, over the promised one; NaN of moves."""
         pairs = [(a.rate, b.growth) for a, b in zip(self.cases, self.outcomes, strict=True) if np.isfinite(b.growth)]
         return float(np.median([abs(b - a) / abs(a) for a, b in pairs])) if pairs else float("nan")
 
@@ -125,6 +148,7 @@ class Agreement:
         """Plain numbers."""
         return {
             "robot": self.robot,
+            "trial": self.trial,
             "seed": self.seed,
             "engine": "mujoco",
             "poses": len(self.cases),
@@ -166,6 +190,7 @@ def agreement_study(
     *,
     poses: int = 500,
     seed: int = 0,
+    trial: str = "nudge",
     methods: Sequence[str] | None = None,
     workers: int | None = None,
     progress: Progress = lambda what, done, total: None,
@@ -175,13 +200,15 @@ def agreement_study(
     Drawn at each pose: method, task gains, rate, delays, rate of the task sensor, source of the acceleration; in half
     of the cases a robot that differs from the controller's model, and in half drives that are wrong by a factor. Where
     one class has 55 % of the poses, further ones draw again until the other class comes up; no draw is left out for
-    being near the border. See `watch` for the outcome: a small nudge, observed until it has grown or died out, without
-    regard to the verdict.
+    being near the border. The outcome is watched without regard to the verdict.
 
+    trial : "nudge", so small that only the linear loop matters, until it has grown or died out; or "move", the same
+        controllers with encoder counts, noise, torque and slew limits, driving there from elsewhere, with a push
     methods : names of HARDWARE_METHODS, all if left out; workers : processes, one a core if left out
-    The result depends on `poses`, `seed` and `methods`, not on `workers`. Raises InputError, MissingExtra.
+    The result depends on `poses`, `seed`, `trial` and `methods`, not on `workers`. Raises InputError, MissingExtra.
     """
     import_extra("mujoco", "mujoco")
+    tried = choose("trial", trial, TRIALS)
     chosen = tuple(HARDWARE_METHODS) if methods is None else tuple(methods)
     for name in chosen:
         choose("method", name, HARDWARE_METHODS)
@@ -192,27 +219,14 @@ def agreement_study(
     drawn = random_poses(plant, poses, seed)
     with _mapper(workers or cores()) as each:
         cases, redrawn, undesigned = _balanced(drawn, seed, chosen, each, progress)
+        cases = [tried.prepared(case, seed) for case in cases]
         outcomes = []
-        for found in each(watch, cases):
+        for found in each(tried.watch, cases):
             outcomes.append(found)
             progress("watched in MuJoCo", len(cases) + len(outcomes), 2 * len(cases))
         wrong = [case for case, found in zip(cases, outcomes, strict=True) if case.stable != found.settled]
-        explained = {case.number: why for case, why in zip(wrong, each(explain, wrong), strict=True)}
-    return Agreement(plant.name, seed, tuple(cases), tuple(outcomes), redrawn, undesigned, explained)
-
-
-def explain(case: Case) -> dict[str, Any]:
-    """Why a verdict did not come true: watched again from a hundredth of the nudge, four times as long."""
-    again = watch(case, 0.01 * NUDGE, 4.0 * LONGEST)
-    measured = float(np.exp(again.growth / case.controller.sensing.rate))
-    said = f"spectral radius promised {case.radius:.7f}, measured {measured:.7f} a sample"
-    if again.settled == case.stable:
-        why = f"it comes true from a hundredth of the nudge, watched four times as long: {said}"
-    elif max(abs(case.radius - 1.0), abs(measured - 1.0)) < NEAR:
-        why = f"the border itself, within {NEAR:g} of 1: {said}"
-    else:
-        why = f"unexplained: {said}"
-    return {"why": why, "time_constant_s": 1.0 / max(abs(case.rate), 1e-12), "watched_again": asdict(again)}
+        explained = {case.number: why for case, why in zip(wrong, each(tried.explain, wrong), strict=True)}
+    return Agreement(plant.name, trial, seed, tuple(cases), tuple(outcomes), redrawn, undesigned, explained)
 
 
 def _balanced(

@@ -1,4 +1,4 @@
-"""One case of the agreement study: a controller drawn at a pose, its linear verdict, and what MuJoCo makes of it."""
+"""One case of the agreement study: a controller drawn at a pose, and its linear verdict."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from flexbase.checks import Array
 from flexbase.control.sampled_controller import SampledController
 from flexbase.control.sampled_loop import close_loop
 from flexbase.control.sampled_plant import Changed, changed_pose, eight_changes
@@ -17,18 +16,11 @@ from flexbase.errors import FlexbaseError
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
-from flexbase.simulate.loop import Loop
-from flexbase.simulate.mujoco_held import MujocoHeld
 
 RATES = (1e3, 2e3, 4e3)
 SCALES = (1.0 / 16.0, 0.25, 1.0, 4.0)  # of the project's task gains: (s Kp, sqrt(s) Kv)
 ACCELERATIONS = ("accelerometer", "accelerometer", "encoders", "kalman")
 DRIVE = (0.5, 4.0)  # torque given over torque asked, in half of the cases
-NUDGE = 1e-6  # rad or m of all joints together: the start
-GROWN = 1e3  # times the nudge: has left
-DECAYED = 1e-4  # of the largest deviation so far: has come to rest, if it stays so for as long again
-WINDOW = 0.05  # s, over which the largest deviation is taken
-LONGEST = 8.0  # s: after it, the last quarter is compared with the one before
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,6 +62,10 @@ class Case:
             "compute_delay": sensing.compute_delay,
             "task_delay": sensing.task_delay,
             "acceleration": sensing.acceleration,
+            "encoder_counts": sensing.encoder_counts,
+            "task_noise": sensing.task_noise,
+            "acceleration_noise": sensing.acceleration_noise,
+            "torque_limit": sensing.torque_limit,
             "change": self.change,
             "drive": self.drive,
             "joints": self.pose.q[self.pose.arm.m :].tolist(),
@@ -81,9 +77,9 @@ class Case:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What happened: settled or not, how it was seen ("decayed", "grown", "slope"), after how long [s].
+    """What happened: settled or not, how it was seen, after how long [s].
 
-    growth : as measured at the end [1/s]
+    growth : as measured at the end [1/s]; NaN where it was not
     """
 
     settled: bool
@@ -123,45 +119,3 @@ def _driven(controller: SampledController, drive: float) -> SampledController:
     """The controller on drives whose torque is wrong by a factor."""
     system = controller.system
     return replace(controller, system=replace(system, C=drive * system.C, D=drive * system.D))
-
-
-def watch(case: Case, nudge: float = NUDGE, longest: float = LONGEST) -> Outcome:
-    """Nudge all joints, base and arm, at rest in MuJoCo, and wait until the motion has grown or died out.
-
-    The linear verdict is not looked at: neither the horizon nor the rule depends on it. Grown: a thousand times the
-    nudge. Died out: below 1e-4 of the largest deviation, and still so after as long again. Neither within `longest`
-    seconds: the larger of the last quarter and the one before it decides.
-    """
-    sensing, goal = case.controller.sensing, case.pose
-    direction = np.random.default_rng([case.number, 7]).standard_normal(goal.arm.N)
-    start = (goal.q + nudge * direction / np.linalg.norm(direction))[None]
-    loop = Loop([case.controller], [goal], MujocoHeld([goal], start, sensing), start=start)
-    samples = max(16, round(WINDOW * sensing.rate))
-    still = np.zeros((samples, goal.arm.k))
-    sizes: list[float] = []
-    rested: int | None = None  # number of the first window at rest
-    while len(sizes) * samples * sensing.step < longest:
-        sizes.append(float(np.linalg.norm(loop.go(still).q[:, 0] - goal.q, axis=1).max()))
-        if not loop.alive[0] or not sizes[-1] <= GROWN * nudge:
-            return _outcome(False, "grown", sizes, samples * sensing.step)
-        if sizes[-1] >= DECAYED * max(sizes):
-            rested = None
-        elif rested is None:
-            rested = len(sizes)
-        elif len(sizes) >= 2 * rested:
-            return _outcome(True, "decayed", sizes[:rested], samples * sensing.step)
-    quarter = len(sizes) // 4
-    settled = max(sizes[-quarter:]) < max(sizes[-2 * quarter : -quarter])
-    return _outcome(settled, "slope", sizes, samples * sensing.step)
-
-
-def _outcome(settled: bool, seen: str, sizes: list[float], window: float) -> Outcome:
-    return Outcome(settled, seen, len(sizes) * window, growth_of(np.array(sizes), window))
-
-
-def growth_of(sizes: Array, window: float) -> float:
-    """Slope of the logarithm of the largest deviations, over their last half [1/s]; NaN of one window."""
-    late = np.log(np.maximum(sizes[np.isfinite(sizes)], 1e-300))[-max(2, len(sizes) // 2) :]
-    if len(late) < 2:
-        return float("nan")
-    return float(np.polyfit(window * np.arange(len(late)), late, 1)[0])
