@@ -11,10 +11,11 @@ import numpy as np
 
 from flexbase.checks import Array
 from flexbase.linear.discrete import Discrete, series
-from flexbase.linear.disk_margin import balancing, grid_of, tighter
+from flexbase.linear.disk_margin import balancing, grid_of, scaled, spectral_norm, tighter
 
 NEAR = 0.75  # share of the largest from which further peaks and poles count
 PEAKS = 6
+COARSE = 64  # frequencies on the grid: the closed loop's own poles are added to it
 
 
 class Piece(NamedTuple):
@@ -44,7 +45,7 @@ class AffineLoop:
 
     @cached_property
     def _grid(self) -> Array:
-        return grid_of(series(self.averaged, self.estimator))
+        return grid_of(series(self.averaged, self.estimator), COARSE)
 
     @cached_property
     def _responses(self) -> tuple[np.ndarray, np.ndarray]:
@@ -97,34 +98,48 @@ class AffineLoop:
     def margins(self, theta: Array, sensors: bool = True) -> list[Piece]:
         """Disk margins at their tightest frequencies: at the torques, and at the sensors too where asked.
 
-        Slopes take each peak's scaling of the channels as the best one, where it has no slope of its own.
+        Slopes take each peak's frequency, and its scaling of the channels, as the best one, where it has no slope of
+        its own.
         """
         frequencies = np.concatenate([self._grid, self._frequencies(theta)])
         order = np.argsort(frequencies)
         beyond = self._at(frequencies[len(self._grid) :])
         P, F = (np.concatenate(pair)[order] for pair in zip(self._responses, beyond, strict=True))
-        K = theta @ F
-        S = np.linalg.inv(np.eye(P.shape[2]) - K @ P)
-        found = _margin_pieces(S, S, F @ P @ S)
-        if sensors:
-            outer = np.eye(P.shape[1]) + P @ S @ K
-            found += _margin_pieces(outer, P @ S, F @ outer)
+        found = []
+        for side in (_at_torques, _at_sensors) if sensors else (_at_torques,):
+            found += _pieces(*side(theta, P, F))
         return found
 
 
-def _margin_pieces(S: np.ndarray, left: np.ndarray, right: np.ndarray) -> list[Piece]:
-    """1 / mu(S - I/2) at its peaks; dS = left dTheta right."""
-    T = S - 0.5 * np.eye(S.shape[-1])
+def _at_torques(theta: Array, P: np.ndarray, F: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """S - I/2 with S = (I + L)^-1, and left and right in dS = left dTheta right."""
+    eye = np.eye(P.shape[2])
+    S = np.linalg.inv(eye - theta @ F @ P)
+    return S - 0.5 * eye, S, F @ (P @ S)
+
+
+def _at_sensors(theta: Array, P: np.ndarray, F: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The same where the measurements come in."""
+    K = theta @ F
+    left = P @ np.linalg.inv(np.eye(P.shape[2]) - K @ P)
+    half = 0.5 * np.eye(P.shape[1])
+    T = half + left @ K
+    return T, left, F @ (T + half)
+
+
+def _pieces(T: np.ndarray, left: np.ndarray, right: np.ndarray) -> list[Piece]:
+    """1 / mu(T) at its peaks; dT = left dTheta right."""
     d = balancing(T)
-    balanced = T * d[:, :, None] / d[:, None, :]
-    sizes = np.linalg.norm(balanced, 2, axis=(-2, -1))
+    balanced = scaled(T, d)
+    sizes = np.linalg.norm(balanced, axis=(-2, -1))  # Frobenius', no less than what is wanted
+    large = sizes >= NEAR * float(spectral_norm(balanced[np.argmax(sizes)]))
+    sizes[large] = spectral_norm(balanced[large])
     inside = np.r_[-np.inf, sizes, -np.inf]
     peaks = np.flatnonzero((sizes >= inside[:-2]) & (sizes >= inside[2:]) & (sizes >= NEAR * sizes.max()))
     peaks = peaks[np.argsort(-sizes[peaks])][:PEAKS]
     d = tighter(T[peaks], d[peaks])
-    u, s, vh = np.linalg.svd(T[peaks] * d[:, :, None] / d[:, None, :])
-    found = []
-    for i, peak in enumerate(peaks):
-        row, column = (u[i, :, 0].conj() * d[i]) @ left[peak], right[peak] @ (vh[i, 0].conj() / d[i])
-        found.append(Piece(1.0 / float(s[i, 0]), -np.real(np.outer(row, column)) / float(s[i, 0]) ** 2))
-    return found
+    u, s, vh = np.linalg.svd(scaled(T[peaks], d))
+    rows = ((u[:, :, 0].conj() * d)[:, None, :] @ left[peaks])[:, 0]
+    columns = (right[peaks] @ (vh[:, 0].conj() / d)[:, :, None])[:, :, 0]
+    slopes = -np.real(rows[:, :, None] * columns[:, None, :]) / s[:, :1, None] ** 2
+    return [Piece(1.0 / float(size), slope) for size, slope in zip(s[:, 0], slopes, strict=True)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -87,10 +88,24 @@ def series(first: Discrete, then: Discrete) -> Discrete:
 def side_by_side(*systems: Discrete) -> Discrete:
     """Systems with inputs and outputs of their own."""
 
-    def together(name: str) -> Array:
-        return np.asarray(scipy.linalg.block_diag(*(getattr(system, name) for system in systems)))
+    return Discrete(
+        _diagonal([one.A for one in systems]),
+        _diagonal([one.B for one in systems]),
+        _diagonal([one.C for one in systems]),
+        _diagonal([one.D for one in systems]),
+        systems[0].step,
+    )
 
-    return Discrete(together("A"), together("B"), together("C"), together("D"), systems[0].step)
+
+def _diagonal(blocks: Sequence[Array]) -> Array:
+    """Blocks along the diagonal; one without rows or columns still takes its columns or rows."""
+    whole = np.zeros(np.sum([block.shape for block in blocks], axis=0))
+    row = column = 0
+    for block in blocks:
+        height, width = block.shape
+        whole[row : row + height, column : column + width] = block
+        row, column = row + height, column + width
+    return whole
 
 
 def parallel(*systems: Discrete) -> Discrete:

@@ -6,16 +6,17 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from flexbase.checks import Array
 from flexbase.linear.discrete import Discrete
 
 POINTS = 160  # frequencies on a logarithmic grid, beside those next to the poles
 AROUND_POLES = np.array([0.9, 0.97, 0.99, 1.0, 1.01, 1.03, 1.1])
-SCALINGS = 12  # rounds of balancing the channels
-ONE_WAY = 1e-12  # a channel that only hears, or only speaks, is scaled as if it did the other by this share
-ROUNDS = 15  # of refining a balance
+ZOOMS, ZOOMED = 3, 17  # of the grid around the maximum, and points in each
+SCALINGS = 12  # rounds of balancing the channels, at most
+SETTLED = 1e-2  # change of D^2 in a round that is the last
+ONE_WAY = 1e-24  # a channel that only hears, or only speaks, is scaled as if it did the other by this share of power
+ROUNDS = 6  # of refining a balance
 
 
 class DiskMargin(NamedTuple):
@@ -37,56 +38,64 @@ def disk_margin(sensitivity: Discrete) -> DiskMargin:
     """
     shifted = replace(sensitivity, D=sensitivity.D - 0.5 * np.eye(len(sensitivity.D)))
     frequencies = grid_of(sensitivity)
-    sizes = structured_norm(shifted.transfer_function(frequencies))
-    top = int(np.argmax(sizes))
-    low, high = frequencies[max(top - 1, 0)], frequencies[min(top + 1, len(frequencies) - 1)]
-    found = minimize_scalar(
-        lambda w: -float(structured_norm(shifted.transfer_function(np.array([w])))[0]),
-        bounds=(low, high),
-        method="bounded",
-    )
-    size, where = max((float(sizes[top]), float(frequencies[top])), (-float(found.fun), float(found.x)))
+    for _ in range(1 + ZOOMS):
+        sizes = structured_norm(shifted.transfer_function(frequencies))
+        top = int(np.argmax(sizes))
+        size, where = float(sizes[top]), float(frequencies[top])
+        ends = frequencies[max(top - 1, 0)], frequencies[min(top + 1, len(frequencies) - 1)]
+        frequencies = np.linspace(*ends, ZOOMED)
     return DiskMargin(1.0 / size, where)
 
 
-def grid_of(system: Discrete) -> Array:
+def grid_of(system: Discrete, points: int = POINTS) -> Array:
     """Frequencies up to Nyquist's: a logarithmic grid, and the neighbourhood of every pole [rad/s]."""
     nyquist = np.pi / system.step
     poles = np.linalg.eigvals(system.A) if system.order else np.zeros(0)
     turning = np.abs(np.angle(poles[np.abs(poles) > 1e-6])) / system.step
     near = (turning[turning > 1e-6 * nyquist][:, None] * AROUND_POLES).ravel()
-    grid = np.concatenate([np.geomspace(1e-4 * nyquist, nyquist, POINTS), near])
+    grid = np.concatenate([np.geomspace(1e-4 * nyquist, nyquist, points), near])
     return np.asarray(np.unique(grid[grid <= nyquist]))
 
 
 def structured_norm(T: np.ndarray) -> Array:
     """min over positive diagonal D of |D T D^-1|, shape (...), of T of shape (..., channels, channels).
 
-    Osborne's balancing, then the better of it and no scaling: an upper bound of mu for independent complex channels.
+    Osborne's balancing, then the better of it and no scaling: an upper bound of mu for independent complex channels,
+    and the minimum itself for two.
     """
-    plain = np.linalg.norm(T, 2, axis=(-2, -1))
-    if T.shape[-1] == 1:
-        return np.asarray(plain)
-    d = balancing(T)
-    balanced = T * d[..., :, None] / d[..., None, :]
-    return np.asarray(np.minimum(plain, np.linalg.norm(balanced, 2, axis=(-2, -1))))
+    return np.minimum(spectral_norm(T), spectral_norm(scaled(T, balancing(T))))
+
+
+def spectral_norm(T: np.ndarray) -> Array:
+    """The largest singular value, shape (...), of T of shape (..., channels, channels)."""
+    if T.shape[-1] == 2:  # singular values have |T|_F^2 as their sum of squares, and |det T| as their product
+        total = (np.abs(T) ** 2).sum(axis=(-2, -1))
+        twice = 2.0 * np.abs(T[..., 0, 0] * T[..., 1, 1] - T[..., 0, 1] * T[..., 1, 0])
+        return np.asarray(np.sqrt(0.5 * (total + np.sqrt(np.maximum(total - twice, 0.0) * (total + twice)))))
+    return np.asarray(np.sqrt(np.linalg.eigvalsh(T.conj().swapaxes(-1, -2) @ T)[..., -1]))
+
+
+def scaled(T: np.ndarray, d: Array) -> np.ndarray:
+    """D T D^-1."""
+    return np.asarray(T * (d[..., :, None] / d[..., None, :]))
 
 
 def balancing(T: np.ndarray) -> Array:
     """Osborne's D, shape (..., channels): rows and columns of D T D^-1 weigh the same off the diagonal."""
     channels = T.shape[-1]
-    d = np.ones(T.shape[:-1])
-    if channels == 1:
-        return d
-    off = np.abs(T) ** 2 * (1.0 - np.eye(channels))
-    for _ in range(SCALINGS):
+    weight = np.ascontiguousarray(np.moveaxis(np.abs(T) ** 2, (-2, -1), (0, 1)))
+    weight[range(channels), range(channels)] = 0.0
+    squares = np.ones((channels, *T.shape[:-2]))  # of D
+    for _ in range(SCALINGS if channels > 1 else 0):
+        before = squares.copy()
         for i in range(channels):
-            row = np.sqrt(np.einsum("...j,...j->...", off[..., i, :], 1.0 / d**2))
-            column = np.sqrt(np.einsum("...j,...j->...", off[..., :, i], d**2))
-            floor = ONE_WAY * np.maximum(row, column) + 1e-300
-            d[..., i] = np.sqrt(np.maximum(column, floor) / np.maximum(row, floor))
-        d /= np.exp(np.log(d).mean(axis=-1, keepdims=True))
-    return d
+            row = (weight[i] / squares).sum(axis=0) + 1e-300
+            column = (weight[:, i] * squares).sum(axis=0) + 1e-300
+            squares[i] = np.sqrt(np.minimum(np.maximum(column / row, ONE_WAY), 1.0 / ONE_WAY))
+        if np.all(np.abs(squares / before - 1.0) < SETTLED):
+            break
+    d = np.moveaxis(np.sqrt(squares), 0, -1)
+    return np.asarray(d / np.exp(np.log(d).mean(axis=-1, keepdims=True)))
 
 
 def tighter(T: np.ndarray, d: Array) -> Array:
@@ -94,9 +103,11 @@ def tighter(T: np.ndarray, d: Array) -> Array:
 
     Where the largest singular value is simple it is least where its left and right vectors weigh each channel alike.
     """
-    best, least = d, np.linalg.norm(T * d[..., :, None] / d[..., None, :], 2, axis=(-2, -1))
+    if T.shape[-1] <= 2:
+        return d
+    best, least = d, spectral_norm(scaled(T, d))
     for _ in range(ROUNDS):
-        u, s, vh = np.linalg.svd(T * d[..., :, None] / d[..., None, :])
+        u, s, vh = np.linalg.svd(scaled(T, d))
         better = s[..., 0] < least
         least, best = np.where(better, s[..., 0], least), np.where(better[..., None], d, best)
         weight = np.abs(vh[..., 0, :]) + 1e-6, np.abs(u[..., :, 0]) + 1e-6

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from flexbase.checks import Array
 from flexbase.control.hardware import GOOD_MARGIN, HardwareVerdict, hardware_verdict
 from flexbase.control.sampled_controller import SampledController
 from flexbase.design.hardware.minimax import Found, descend
@@ -33,9 +34,10 @@ def constant(
 ) -> SampledController:
     """Task stiffness, and full matrices on tip rate, joint rate and acceleration; the stiffest accepted of `scales`.
 
-    The objective and the descent are those of `sampled`, first with E and two scalars free, then with every entry.
-    Accepted: stable at the pose and on the eight changed robots, disk margins of `margin` at torques and sensors. Where
-    nothing is accepted the one with the largest margin is returned, and `notes["accepted"]` is false.
+    The objective and the descent are those of `sampled`: at the first scale with E and two scalars free, then with
+    every entry; at the next from where the one before ended. Accepted: stable at the pose and on the eight changed
+    robots, disk margins of `margin` at torques and sensors. Where nothing is accepted the one with the largest margin
+    is returned, and `notes["accepted"]` is false.
 
     scales : factors on the stiffness, with their roots on the damping to start from; most : looks in a descent
     Raises InputError, Infeasible where no scale gives a stable loop.
@@ -43,8 +45,9 @@ def constant(
     if not scales or min(scales) <= 0.0:
         raise InputError(f"scales: {list(scales)} are not factors above 0. Give such as 1.0, 0.5.")
     best: tuple[float, SampledController] | None = None
+    last: Array | None = None
     for scale in scales:
-        controller = _at(pose, sensing, gains, scale, most)
+        controller, last = _at(pose, sensing, gains, scale, most, last)
         verdict = hardware_verdict(controller, brief=True)
         tightest = min(verdict.disk_margin_torque, verdict.disk_margin_sensor)
         controller.notes["accepted"] = _accepted(verdict, margin)
@@ -61,12 +64,18 @@ def _accepted(verdict: HardwareVerdict, margin: float) -> bool:
     return verdict.survives and min(verdict.disk_margin_torque, verdict.disk_margin_sensor) >= margin
 
 
-def _at(pose: Pose, sensing: Sensing, gains: Gains, scale: float, most: int) -> SampledController:
+def _at(
+    pose: Pose, sensing: Sensing, gains: Gains, scale: float, most: int, last: Array | None
+) -> tuple[SampledController, Array]:
+    """The controller at a scale and its unknowns; descends from those of the last scale where there are any."""
     softer = Gains(scale * gains.stiffness, scale**0.5 * gains.damping)
-    first = SampledProblem(pose, sensing, softer, FIRST_FREE)
-    rough = min((descend(first.look, start, most) for start in first.starts()[:2]), key=lambda one: one.value)
     whole = SampledProblem(pose, sensing, softer, ALL)
-    start = np.concatenate([rough.x, np.zeros(len(whole.units) - len(rough.x))])
-    fine = descend(whole.look, start, most)
-    made = whole.controller(Found(fine.x, fine.value, 0), rough.looks + fine.looks)
-    return SampledController("constant", pose, sensing, made.system, made.E, {**made.notes, "scale": scale})
+    looks = 0
+    if last is None:
+        first = SampledProblem(pose, sensing, softer, FIRST_FREE)
+        rough = min((descend(first.look, start, most) for start in first.starts()[:2]), key=lambda one: one.value)
+        last = np.concatenate([rough.x, np.zeros(len(whole.units) - len(rough.x))])
+        looks = rough.looks
+    fine = descend(whole.look, last, most)
+    made = whole.controller(Found(fine.x, fine.value, 0), looks + fine.looks)
+    return SampledController("constant", pose, sensing, made.system, made.E, {**made.notes, "scale": scale}), fine.x
