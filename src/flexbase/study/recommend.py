@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
@@ -20,10 +19,11 @@ from flexbase.linear.modal import modes
 from flexbase.model.sensing import TYPICAL, Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
+from flexbase.study.processes import in_processes
 
 RATES = (250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0)  # Hz: where a change of the answer is looked for
-RIVALS = 4  # methods that are tried at other rates and with other sensors, beside the first of the registry
 CLOSE = 0.8  # of the best stiffness: a simpler method that reaches it is preferred
+Task = tuple[Pose, str, Sensing, Gains | None, bool]  # the last: in brief
 ERRORS = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5)  # of the base stiffness: how wrong the model may be
 
 
@@ -130,6 +130,7 @@ def recommend(
     sensing: Sensing | None = None,
     gains: Gains | None = None,
     methods: Sequence[str] | None = None,
+    workers: int | None = None,
     progress: Callable[[str, int, int], None] = lambda what, done, total: None,
 ) -> Recommendation:
     """Judge every method at a pose as its loop would run, and choose.
@@ -138,6 +139,7 @@ def recommend(
     earlier in the registry is preferred where it reaches 80 % of it.
 
     sensing : the project's own if left out, else 1 kHz with one sample of delay
+    workers : processes, one a core if left out
     Raises InputError without task gains.
     """
     declared = sensing is not None or pose.arm.sensing is not None
@@ -148,15 +150,14 @@ def recommend(
     others = [(f"{rate:g} Hz", replace(used, rate=rate)) for rate in RATES if rate != used.rate]
     sensors = [("accelerometer", "joint accelerometers"), ("encoders", "differenced encoders")]
     others += [(said, replace(used, acceleration=kind)) for kind, said in sensors if kind != used.acceleration]
-    total, done = len(chosen) * (1 + len(others)), 0
-    tables: list[list[Candidate]] = []
-    for label, one in [("here", used), *others]:
-        row = []
-        for name in chosen:
-            row.append(_candidate(pose, name, one, gains, brief=label != "here"))
-            done += 1
-            progress(name, done, total)
-        tables.append(row)
+    settings = [("here", used), *others]
+    tasks = [(pose, name, one, gains, label != "here") for label, one in settings for name in chosen]
+    found: dict[int, Candidate] = {}
+    for number, candidate in in_processes(_candidate, tasks, workers):
+        found[number] = candidate
+        progress(candidate.method, len(found), len(tasks))
+    count = len(chosen)
+    tables = [[found[row * count + i] for i in range(count)] for row in range(len(settings))]
     best = choose_best(tables[0])
     answers = [choose_best(row) for row in tables[1:]]
     changes = {
@@ -187,13 +188,12 @@ def _smaller_margin(one: Candidate) -> float:
     return 0.0 if one.verdict is None else min(one.verdict.disk_margin_torque, one.verdict.disk_margin_sensor)
 
 
-def _candidate(pose: Pose, name: str, sensing: Sensing, gains: Gains | None, brief: bool) -> Candidate:
+def _candidate(task: Task) -> Candidate:
+    pose, name, sensing, gains, brief = task
     purpose = HARDWARE_METHODS[name].purpose
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # cautions of designs: the verdict is what counts here
-            controller = controller_for(pose, name, sensing, gains)
-            verdict = hardware_verdict(controller, brief=brief)
+        controller = controller_for(pose, name, sensing, gains)
+        verdict = hardware_verdict(controller, brief=brief)
     except (FlexbaseError, np.linalg.LinAlgError) as fault:
         return Candidate(name, purpose, None, refusal=str(fault).split(". ")[0])
     if brief or not verdict.stable:
