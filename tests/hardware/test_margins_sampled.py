@@ -9,10 +9,11 @@ import pytest
 
 import flexbase as fb
 from flexbase.control.hardware import hardware_verdict
-from flexbase.control.sampled_controller import SampledController, pd_with_gain
-from flexbase.control.sampled_loop import close_loop, loop_gain, sensitivities, tip_stiffness
+from flexbase.control.sampled_controller import SampledController, joint_damping, pd_with_gain
+from flexbase.control.sampled_loop import close_loop, loop_gain, sensitivities, tip_correction, tip_stiffness
 from flexbase.control.sampled_plant import Changed, changed_pose, sampled_plant
-from flexbase.linear.discrete import Discrete, delay, series, static
+from flexbase.design.hardware import controller_for
+from flexbase.linear.discrete import Discrete, delay, parallel, series, static
 from flexbase.linear.disk_margin import disk_margin, structured_norm
 from flexbase.linear.loop_margins import delay_margin
 from flexbase.model.sensing import Sensing
@@ -116,8 +117,35 @@ def test_verdict(loop: SampledController, paper_pose: fb.Pose) -> None:
     assert verdict.algebraic_loop_radius == pytest.approx(0.72298, abs=1e-5)
     assert verdict.algebraic_loop_radius_per_joint == pytest.approx(0.93188, abs=1e-5)
     assert not verdict.has_margin
-    assert len(verdict.to_dict()) == 15
+    assert len(verdict.to_dict()) == 16
     slow = replace(
         loop, sensing=Sensing(), system=Discrete(loop.system.A, loop.system.B, loop.system.C, loop.system.D, 1e-3)
     )
     assert hardware_verdict(slow, changes=()).to_dict()["spectral_radius"] > 1.0
+
+
+def test_correction_is_what_a_late_run_shows(paper_pose: fb.Pose) -> None:
+    """A task sensor that is off by a constant: where the tip comes to rest, by 20,000 samples of the linear loop."""
+    controller = controller_for(paper_pose, "coprime", Sensing())
+    plant, law = sampled_plant(paper_pose, controller.sensing), controller.system
+    drive, offset = plant.select(list(range(8)), [0, 1]), np.array([1e-3, 0.0, 0.0, 0.0, 0.0, 0.0])
+    shares = []
+    for direction in (offset, np.roll(offset, 1)):
+        x, c = np.zeros(drive.order), np.zeros(law.order)
+        for _ in range(20_000):
+            seen = drive.C[:6] @ x + direction
+            tau = law.C @ c + law.D @ seen
+            c, x = law.A @ c + law.B @ seen, drive.A @ x + drive.B @ tau
+        shares.append(-drive.C[6:] @ x / 1e-3)
+    assert tip_correction(paper_pose, controller) == pytest.approx(np.linalg.svd(np.array(shares))[1][-1], rel=1e-6)
+
+
+def test_task_pd_corrects_all_of_a_tip_error(loop: SampledController) -> None:
+    """And a controller that hears the joints alone, nothing."""
+    assert tip_correction(loop.pose, loop) == pytest.approx(1.0, abs=1e-9)
+    deaf = loop.system.B.copy(), loop.system.D.copy()
+    for part in deaf:
+        part[:, :2] = 0.0
+    joints = replace(loop, system=replace(loop.system, B=deaf[0], D=deaf[1]))
+    held = replace(joints, system=parallel(joints.system, joint_damping(loop.pose, FAST, np.eye(2), 100.0 * np.eye(2))))
+    assert tip_correction(loop.pose, held) == 0.0

@@ -5,17 +5,17 @@ from __future__ import annotations
 from typing import Annotated
 
 from cyclopts import App, Parameter
-from rich.console import RenderableType
 
+from flexbase.cli.agreement_table import good, tables
 from flexbase.cli.document import document
 from flexbase.cli.options import Json, option
 from flexbase.cli.out import OutFile, check_out, write_out, written
 from flexbase.cli.pose import Robot
 from flexbase.cli.progress import progress_bar
-from flexbase.cli.show import facts, put, table, title, verdict
+from flexbase.cli.show import put
 from flexbase.cli.words import Names, names
 from flexbase.plant import load
-from flexbase.study.agreement import TRIALS, Agreement, agreement_study
+from flexbase.study.agreement import TRIALS, agreement_study
 
 app = App(
     name="agreement",
@@ -26,10 +26,11 @@ app = App(
 
 Random controllers on random robots: each is nudged in MuJoCo and watched until
 the motion has grown or died out. With --trial move it drives there from
-elsewhere instead, through counts, noise and limits, and is pushed. Exit status: 0 at least 98 % of the verdicts
-come true and neither error is above 2 %, 1 not, 2 wrong input.""",
+elsewhere instead, through counts, noise and limits, and is pushed.
+
+Exit status: 0 at least 98 % of the verdicts come true and neither error is above
+2 %, 1 not, 2 wrong input.""",
 )
-ENOUGH, ERROR = 0.98, 0.02
 Out = Annotated[OutFile, Parameter(help="write all cases as .json")]
 
 
@@ -55,32 +56,5 @@ def study_agreement(
         )
     content = found.to_dict()
     write_out(out, "study agreement", found, content)
-    put(document("study agreement", content)) if json else put(*_tables(found), *written(out))
-    return 0 if _good(found) else 1
-
-
-def _good(found: Agreement) -> bool:
-    return found.agreement >= ENOUGH and max(found.false_stable_rate, found.false_unstable_rate) <= ERROR
-
-
-def _tables(found: Agreement) -> list[RenderableType]:
-    nudged = found.trial == "nudge"
-    counts, control, near = found.confusion(), found.constant_predictor(), found.borderline()
-    rows = [
-        [f"called {a}", *(str(counts[f"predicted_{a}_{b}"]) for b in ("settled", "not_settled"))]
-        for a in ("stable", "unstable")
-    ]
-    said = [
-        ("unstable, called stable", f"{100 * found.false_stable_rate:.1f} %"),
-        ("stable, called unstable", f"{100 * found.false_unstable_rate:.1f} %"),
-        ("within 0.001 of the border", f"{near['agreeing']} of {near['cases']} come true"),
-        *([("growth, measured to promised", f"{100 * found.growth_error:.2g} % apart (median)")] * nudged),
-        ("always saying " + control["says"], f"{100 * control['agreement']:.1f} %"),
-        *(("disagrees", f"case {one['number']}: {one['explanation']['why']}") for one in found.disagreements()),
-    ]
-    head: list[RenderableType] = [
-        title(found.robot, f"linear verdicts against a {found.trial} in MuJoCo, {len(found.cases)} poses"),
-        "",
-    ]
-    end = verdict(_good(found), f"{100 * found.agreement:.1f} % come true", f"{100 * found.agreement:.1f} % come true")
-    return [*head, table(["", "settled", "not settled"], rows, words=(0,)), facts(said), "", end]
+    put(document("study agreement", content)) if json else put(*tables(found), *written(out))
+    return 0 if good(found) else 1

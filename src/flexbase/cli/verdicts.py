@@ -16,14 +16,16 @@ COLUMNS = (
     "sensor\nmargin",
     "delay lag\n[ms]",
     "worst\nradius",
-    "stiff\n[N/m]",
+    "stiff\n[kN/m]",
+    "tip\n[%]",
     "tau\n[ms]",
 )
 NO_TORQUE = """  A robot that takes positions only cannot run these laws: they are torques. It
   can run admittance, well below the bandwidth of its own position loop."""
 LEGEND = f"""  * safe: stable, disk margins of {GOOD_MARGIN:g} at torques and sensors, and on all
   changed robots stable. radius: spectral, a sample; below 1 it settles. delay,
-  lag: what all torques bear beyond their own, -: no limit. worst: when changed."""
+  lag: what all torques bear beyond their own, -: no limit. worst: when changed.
+  tip: of a constant tip error that the joints do not show, what is taken away."""
 
 
 def tables(found: Comparison) -> list[RenderableType]:
@@ -50,9 +52,13 @@ def tables(found: Comparison) -> list[RenderableType]:
 def _row(one: HardwareVerdict) -> list[str]:
     margins = [f"{one.disk_margin_torque:.2f}", f"{one.disk_margin_sensor:.2f}"] if one.stable else ["-", "-"]
     bears = f"{_milli(one.delay_margin_s)} {_milli(one.lag_margin_s)}" if one.stable else "-"
-    rest = ["-", "-"]
-    if one.tip_stiffness is not None and one.time_constant_s is not None:
-        rest = [f"{one.tip_stiffness:.1e}", f"{1e3 * one.time_constant_s:.1f}"]
+    rest = ["-", "-", "-"]
+    if one.tip_stiffness is not None and one.tip_correction is not None and one.time_constant_s is not None:
+        rest = [
+            f"{1e-3 * one.tip_stiffness:.3g}",
+            f"{100.0 * one.tip_correction:.0f}",
+            f"{1e3 * one.time_constant_s:.1f}",
+        ]
     good = one.has_margin and one.survives
     mark = "*" if good else ""
     return [f"{one.method}{mark}", f"{one.spectral_radius:.4f}", *margins, bears, f"{one.worst_radius:.4f}", *rest]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -116,13 +116,29 @@ def plants_in_a_period(pose: Pose, sensing: Sensing) -> list[Discrete]:
 
 def tip_stiffness(pose: Pose, controller: SampledController) -> float:
     """Smallest static stiffness of the tip, the loop closed [N/m or N m/rad]. Assumes a stable loop."""
+    return float(1.0 / np.linalg.norm(_at_rest(pose, controller)[:, : pose.arm.k], 2))
+
+
+def tip_correction(pose: Pose, controller: SampledController) -> float:
+    """Share of a constant tip error that the loop takes away at rest, though the joints do not show it.
+
+    1 for a task-space PD, 0 for a controller that only holds the joints. The smallest over all directions; task rows
+    count alike, so rows of different units mix. Assumes a stable loop.
+    """
+    answer = _at_rest(pose, controller)[:, pose.arm.k :]
+    return float(np.linalg.svd(answer, compute_uv=False)[-1])
+
+
+def _at_rest(pose: Pose, controller: SampledController) -> Array:
+    """Where the tip comes to rest by a constant force on it, and by a constant error of the task sensor, (k, 2k)."""
     n, k = pose.arm.n, pose.arm.k
     plant = sampled_plant(pose, controller.sensing)
-    reordered = plant.select(list(range(k + 2 * n)))
-    loop = feedback(reordered, controller.system, external=k)
+    seen = plant.select(list(range(k + 2 * n)))
+    offset = np.eye(len(seen.C), k)
+    widened = replace(seen, B=np.hstack([seen.B, np.zeros((seen.order, k))]), D=np.hstack([seen.D, offset]))
+    loop = feedback(widened, controller.system, external=2 * k)
     true = np.hstack([plant.C[k + 2 * n :], np.zeros((k, loop.order - plant.order))])
-    moved = np.linalg.solve(np.eye(loop.order) - loop.A, loop.B[:, n:])
-    return float(1.0 / np.linalg.norm(true @ moved, 2))
+    return np.asarray(true @ np.linalg.solve(np.eye(loop.order) - loop.A, loop.B[:, n:]))
 
 
 def _uses(system: Discrete, channel: int) -> bool:

@@ -11,7 +11,7 @@ import numpy as np
 from flexbase.checks import choose
 from flexbase.control.hardware import GOOD_MARGIN
 from flexbase.control.sampled_controller import SampledController
-from flexbase.control.sampled_loop import close_loop, sensitivities, tip_stiffness
+from flexbase.control.sampled_loop import close_loop, sensitivities, tip_correction, tip_stiffness
 from flexbase.control.sampled_plant import changed_pose, eight_changes
 from flexbase.design.hardware import HARDWARE_METHODS
 from flexbase.errors import FlexbaseError, FlexbaseWarning, InputError
@@ -35,13 +35,18 @@ SETTINGS = tuple(Setting(*pair) for pair in ((1e3, 0.25), (1e3, 1.0), (1e3, 4.0)
 
 
 class Outcome(NamedTuple):
-    """One method at one pose: whether there is a design, and what it bears; stiffness in N/m, NaN if unstable."""
+    """One method at one pose: whether there is a design, what it bears, and what it does to the tip; NaN if unstable.
+
+    stiffness, correction : `tip_stiffness` and `tip_correction`; time : constant of the slowest motion [s]
+    """
 
     designed: bool
     stable: bool
     margin: bool
     perturbed: bool
-    stiffness: float
+    stiffness: float = float("nan")
+    correction: float = float("nan")
+    time: float = float("nan")
 
 
 @dataclass(frozen=True)
@@ -51,6 +56,8 @@ class Row:
     margin_share : stable with both margins; perturbed_share : stable for the nominal and every changed robot
     complete_share : all three at once; no_design_share : poses where the method finds no controller
     tip_stiffness : median of the smallest static stiffness where stable [N/m]; None where it never is
+    tip_correction, time_constant_s : medians too: share of a tip error, unseen by the joints, that is taken away at
+        rest; and of the slowest motion
     *_interval : 95 % intervals, exact
     """
 
@@ -64,6 +71,8 @@ class Row:
     complete_share: float
     no_design_share: float
     tip_stiffness: float | None
+    tip_correction: float | None
+    time_constant_s: float | None
     stable_interval: tuple[float, float]
     margin_interval: tuple[float, float]
     perturbed_interval: tuple[float, float]
@@ -148,19 +157,28 @@ def _outcome(pose: Pose, name: str, setting: Setting, sensing: Sensing) -> Outco
     try:
         controller = HARDWARE_METHODS[name].make(pose, at_rate, scaled)
     except (FlexbaseError, FlexbaseWarning, np.linalg.LinAlgError):
-        return Outcome(False, False, False, False, float("nan"))
+        return Outcome(False, False, False, False)
     return judge(pose, controller)
 
 
 def judge(pose: Pose, controller: SampledController) -> Outcome:
-    """Stability, disk margins, changed robots and stiffness: the verdict without its slower parts."""
-    if close_loop(pose, controller).radius >= 1.0:
-        return Outcome(True, False, False, False, float("nan"))
+    """Stability, disk margins, changed robots, the tip: the verdict without its slower parts."""
+    radius = close_loop(pose, controller).radius
+    if radius >= 1.0:
+        return Outcome(True, False, False, False)
     margin = min(disk_margin(one).alpha for one in sensitivities(pose, controller))
     perturbed = all(
         close_loop(changed_pose(pose, change), controller).radius < 1.0 for change in eight_changes(pose.arm.n)
     )
-    return Outcome(True, True, margin >= GOOD_MARGIN, perturbed, tip_stiffness(pose, controller))
+    return Outcome(
+        designed=True,
+        stable=True,
+        margin=margin >= GOOD_MARGIN,
+        perturbed=perturbed,
+        stiffness=tip_stiffness(pose, controller),
+        correction=tip_correction(pose, controller),
+        time=-controller.sensing.step / float(np.log(radius)),
+    )
 
 
 def _row(name: str, setting: Setting, outcomes: Sequence[Outcome]) -> Row:
@@ -169,7 +187,7 @@ def _row(name: str, setting: Setting, outcomes: Sequence[Outcome]) -> Row:
     margin = [one.margin for one in outcomes]
     perturbed = [one.perturbed for one in outcomes]
     complete = [one.margin and one.perturbed for one in outcomes]
-    stiffness = [one.stiffness for one in outcomes if one.stable]
+    settling = [one for one in outcomes if one.stable]
     return Row(
         name,
         setting.rate,
@@ -180,12 +198,18 @@ def _row(name: str, setting: Setting, outcomes: Sequence[Outcome]) -> Row:
         float(np.mean(perturbed)),
         float(np.mean(complete)),
         float(np.mean([not one.designed for one in outcomes])),
-        float(np.median(stiffness)) if stiffness else None,
+        _median([one.stiffness for one in settling]),
+        _median([one.correction for one in settling]),
+        _median([one.time for one in settling]),
         share_interval(sum(stable), count),
         share_interval(sum(margin), count),
         share_interval(sum(perturbed), count),
         share_interval(sum(complete), count),
     )
+
+
+def _median(values: Sequence[float]) -> float | None:
+    return float(np.median(values)) if values else None
 
 
 def share_interval(hits: int, trials: int) -> tuple[float, float]:

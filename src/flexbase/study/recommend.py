@@ -22,6 +22,7 @@ from flexbase.plant import Pose
 from flexbase.study.processes import in_processes
 
 RATES = (250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0)  # Hz: where a change of the answer is looked for
+HEARS = 0.1  # of a constant tip error taken away: less is no task-space control
 CLOSE = 0.8  # of the best stiffness: a simpler method that reaches it is preferred
 Task = tuple[Pose, str, Sensing, Gains | None, bool]  # the last: in brief
 ERRORS = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5)  # of the base stiffness: how wrong the model may be
@@ -105,7 +106,8 @@ class Recommendation:
             f"Why: {_merit(best)}; disk margins {verdict.disk_margin_torque:.2f} at torques, "
             f"{verdict.disk_margin_sensor:.2f} at sensors. " + _comparison(best, others),
             f"Cost: static tip stiffness {verdict.tip_stiffness:.3g} N/m, time constant "
-            f"{1e3 * (verdict.time_constant_s or 0.0):.0f} ms, torque noise {best.torque_noise:.3g} N m.",
+            f"{1e3 * (verdict.time_constant_s or 0.0):.0f} ms, torque noise {best.torque_noise:.3g} N m; "
+            f"{100.0 * _correction(best):.0f} % of a tip error that the joints do not show is taken away.",
             f"Needs: {', '.join(best.sensors)}; base stiffness known to "
             + (f"{100.0 * best.stiffness_error:.0f} %." if best.stiffness_error else "better than 5 %."),
             f"Ideal loop: the plant is {'' if self.positive_real else 'not '}positive real here; "
@@ -135,8 +137,8 @@ def recommend(
 ) -> Recommendation:
     """Judge every method at a pose as its loop would run, and choose.
 
-    First the grade (stable, with disk margins of 0.3, for all changed robots), then the stiffness; a method that comes
-    earlier in the registry is preferred where it reaches 80 % of it.
+    First the grade (stable, with disk margins of 0.3, for all changed robots), then whether it corrects the tip at all,
+    then the stiffness; a method that comes earlier in the registry is preferred where it reaches 80 % of it.
 
     sensing : the project's own if left out, else 1 kHz with one sample of delay
     workers : processes, one a core if left out
@@ -169,11 +171,16 @@ def recommend(
 
 
 def choose_best(candidates: Sequence[Candidate]) -> Candidate | None:
-    """The highest grade; among those the first that reaches 80 % of the best stiffness. None where all are unstable."""
+    """The highest grade; among those the first that reaches 80 % of the best stiffness. None where all are unstable.
+
+    A controller that takes away less than a tenth of a tip error has hardly a task-space loop: it is an answer only
+    where no other has its grade.
+    """
     grade = max((one.grade for one in candidates), default=0)
     if grade == 0:
         return None
     first = [one for one in candidates if one.grade == grade]
+    first = [one for one in first if _correction(one) >= HEARS] or first
     if grade == 1:
         return max(first, key=lambda one: _smaller_margin(one))
     stiffest = max(_stiffness(one) for one in first)
@@ -182,6 +189,10 @@ def choose_best(candidates: Sequence[Candidate]) -> Candidate | None:
 
 def _stiffness(one: Candidate) -> float:
     return 0.0 if one.verdict is None else one.verdict.tip_stiffness or 0.0
+
+
+def _correction(one: Candidate) -> float:
+    return 0.0 if one.verdict is None else one.verdict.tip_correction or 0.0
 
 
 def _smaller_margin(one: Candidate) -> float:
