@@ -17,6 +17,7 @@ import pytest
 import flexbase
 from flexbase import FlexbaseWarning, Infeasible, InputError
 from flexbase.linear.linearise import Gain
+from systems.lagged import law
 from systems.oracle import FullSystem
 from systems.planar import PAPER_TIP, planar, sliding_pair
 from systems.random_plants import random_pose
@@ -87,6 +88,14 @@ def check_facts(pose, E, certificate):
         assert w == pytest.approx(robustness, rel=0.0, abs=1e-8 * size)
         # an extreme gain leaves M - E ill-conditioned, and each witness loses as many digits
         assert omega == pytest.approx(frequencies, rel=1e-9 + 1e-16 * np.linalg.cond(pose.M - system.E * (gain is E)))
+    squares, damping, form = law(pose, E)
+    follow = form > 1e-8 * np.abs(E).max()  # what is rounding pumps nothing
+    limits = damping[follow] / (squares * form)[follow]
+    expected = limits.min(initial=np.inf)
+    if certificate.lag_limit_s is None:
+        assert expected > 1.0
+    else:
+        assert certificate.lag_limit_s == pytest.approx(expected, rel=1e-6)
     around = np.linalg.inv(system.inertia)[m:, m:] @ E
     rho = np.abs(np.linalg.eigvals(around)).max()
     assert certificate.algebraic_loop_radius == pytest.approx(rho, rel=1e-8)

@@ -21,6 +21,7 @@ CERTIFICATE = {
     "algebraic_loop_radius",
     "algebraic_loop_radius_per_joint",
     "lag_margin_s",
+    "lag_limit_s",
     "closed_loop_abscissa",
 }
 
@@ -88,6 +89,21 @@ def test_smaller_loop_radius_by_its_objective(call: Call) -> None:
         for objective in ("least-gain", "least-radius")
     ]
     assert radii[1] < radii[0]
+
+
+def test_lag_bounds_the_frequency(call: Call) -> None:
+    """0.3 ms leaves frequencies up to 319.35 rad/s; a share of 0.9 leaves more; the table shows the limit."""
+    half = call(*AT, "--lag", "3e-4", "--json").document("design")["certificate"]
+    assert half["frequency_after_rad_s"][0] == pytest.approx(319.3492, rel=1e-5)
+    assert half["lag_limit_s"] == pytest.approx(6e-4, rel=1e-4)
+    most = call(*AT, "--lag", "3e-4", "--lag-share", "0.9", "--json").document("design")["certificate"]
+    assert most["frequency_after_rad_s"][0] > half["frequency_after_rad_s"][0]
+    assert "lag that takes a mode's whole damping" in call(*AT).out
+    refused = call(*AT, "--lag", "3e-4", "--natural-frequency", "346.8")
+    assert (refused.status, refused.out) == (1, "")
+    assert "a lag of 0.3 ms may take 50 % of the damping" in refused.err
+    wrong = call(*AT, "--method", "bounded", "--lag", "3e-4")
+    assert (wrong.status, wrong.out) == (2, "")
 
 
 def test_gains_of_the_loop(call: Call) -> None:

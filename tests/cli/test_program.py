@@ -48,8 +48,8 @@ SHOWN = {
     "check": "--tip --joints --elbow --branch --json",
     "verdict": "--tip --joints --elbow --branch --compensator --bandwidth --out --json",
     "design": "--tip --joints --elbow --branch --method --natural-frequency --highest-frequency --objective --radius "
-    "--margin --derivatives --step --iterations --seed --stiffness --damping --rate --task-every --task-rate "
-    "--compute-delay --task-delay --encoder-counts --acceleration --accelerometer-lag --acceleration-filter "
+    "--margin --lag --lag-share --derivatives --step --iterations --seed --stiffness --damping --rate --task-every "
+    "--task-rate --compute-delay --task-delay --encoder-counts --acceleration --accelerometer-lag --acceleration-filter "
     "--acceleration-noise --task-noise --torque-limit --torque-slew --out --json",
     "hardware": "--tip --joints --elbow --branch --method --methods --stiffness --damping --rate "
     "--task-every --task-rate --compute-delay --task-delay --encoder-counts --acceleration --accelerometer-lag "

@@ -24,6 +24,7 @@ def tables(found: Compensator, inertia_unit: str) -> list[RenderableType]:
     ]
     columns = ["mode", "w before\n[m/(N s^2)]", "w after\n", "frequency before\n[rad/s]", "frequency after\n"]
     lag = "no limit to 1 s" if proof.lag_margin_s is None else f"{number(1e3 * proof.lag_margin_s, 6)} ms"
+    limit = "none within 1 s" if proof.lag_limit_s is None else f"{number(1e3 * proof.lag_limit_s, 6)} ms"
     loop = proof.closed_loop_abscissa
     margins = [
         ("smallest eigenvalue of M - E", number(proof.min_eig_modified_inertia, 6)),
@@ -31,6 +32,7 @@ def tables(found: Compensator, inertia_unit: str) -> list[RenderableType]:
         ("algebraic-loop radius, one delay", number(proof.algebraic_loop_radius, 6)),
         ("algebraic-loop radius, a delay a joint", number(proof.algebraic_loop_radius_per_joint, 6)),
         ("lag margin of the acceleration signal", "undefined: no task gains" if loop is None else lag),
+        ("lag that takes a mode's whole damping", limit),
         ("closed loop, rightmost pole [1/s]", "undefined: no task gains" if loop is None else number(loop, 6)),
     ]
     said: list[RenderableType] = [

@@ -39,6 +39,11 @@ class MethodOptions:
         None
     )
     margin: Annotated[float | None, option(number, "B", "convex: distance of beta from 0 and 1")] = None
+    lag: Annotated[
+        float | None,
+        option(number, "S", "exact, convex: of the acceleration; may take half of the damping [s]"),
+    ] = None
+    lag_share: Annotated[float | None, option(number, "ETA", "with --lag: share it may take instead, 0.5")] = None
     derivatives: Annotated[str | None, Parameter(metavar="NAME", help="recursions: estimated or exact")] = None
     step: Annotated[float | None, option(number, "G", "recursions: share of the way in a step, up to 1")] = None
     iterations: Annotated[int | None, option(whole, "N", "recursions: number of steps")] = None
@@ -58,6 +63,8 @@ class MethodOptions:
             "objective": self.objective,
             "margin": self.margin,
             "radius": self.radius,
+            "lag": self.lag,
+            "lag_share": self.lag_share,
             "derivatives": self.derivatives,
             "step": self.step,
             "iterations": self.iterations,

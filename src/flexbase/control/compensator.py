@@ -28,6 +28,9 @@ class Certificate:
     algebraic_loop_radius_per_joint : mu; the same with another delay in each joint  [theory §8]
     lag_margin_s : first-order lag of the acceleration feedback that the loop bears; None: no limit to 1 s, or no gains
     closed_loop_abscissa : rightmost pole of the task-space loop [1/s]; None without gains
+    lag_limit_s : smallest total lag of the acceleration that takes all damping of a base mode without the task loop, by
+        the first-order delay law: accurate to about 0.1 ms on the paper's arm, over-predicting beyond; 0 on an undamped
+        base that a lag pumps. None: E pumps no mode, none within 1 s, or a file of an older version  [theory §8]
     statement : why the plant is positive real with this gain, or that it is not; empty in files of older versions
     warnings : plain words on what to beware of
     """
@@ -42,6 +45,7 @@ class Certificate:
     algebraic_loop_radius_per_joint: float
     lag_margin_s: float | None
     closed_loop_abscissa: float | None
+    lag_limit_s: float | None = None
     statement: str = ""
     warnings: tuple[str, ...] = ()
 

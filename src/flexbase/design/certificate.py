@@ -8,6 +8,7 @@ import numpy as np
 
 from flexbase.checks import Array, check_symmetric, finite_array
 from flexbase.control.compensator import Certificate, Compensator
+from flexbase.design.lag_law import lag_limit
 from flexbase.design.statement import statement
 from flexbase.errors import FlexbaseWarning
 from flexbase.linear.linearise import Gain, is_reducible, modified_inertia
@@ -65,6 +66,7 @@ def certify(
         algebraic_loop_radius_per_joint=mu,
         lag_margin_s=None if gains is None else lag_margin(pose, E, gains),
         closed_loop_abscissa=None if gains is None else closed_loop_abscissa(pose, E, gains),
+        lag_limit_s=lag_limit(pose, E),
         statement=statement(pose, E),
         warnings=cautions,
     )

@@ -8,30 +8,29 @@ one beta has no solution each mode may have its own.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from flexbase.checks import Array, positive_number
 from flexbase.control.compensator import Compensator
 from flexbase.design.certificate import certify
-from flexbase.design.choice import check_no_worse, least_lacking
+from flexbase.design.choice import PARTS, check_no_worse, least_lacking
 from flexbase.design.descent import descend, shortage_and_slope
 from flexbase.design.implementable import RADIUS, checked_radius
+from flexbase.design.lag_law import SHARE as SHARE_OF_DAMPING
+from flexbase.design.lag_law import LagLaw, check_obeyed, checked_law, obeys
 from flexbase.design.least_misalignment import MARGIN, least_misalignment
-from flexbase.design.mobility_program import ROOM, SIDES, MobilityProgram, Solution
+from flexbase.design.mobility_program import MobilityProgram
+from flexbase.design.one_beta import one_beta
+from flexbase.design.refusals import aligned, aligned_each, check_frequencies, what_binds
 from flexbase.design.registry import method
 from flexbase.design.shortage import cautions_of_shortage, target_residual
 from flexbase.design.two_modes import TwoModes
 from flexbase.errors import Infeasible, InputError
-from flexbase.linear.modal import modes
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
 
 OBJECTIVES = ("aligned", "mode-by-mode", "least-misaligned")
-SHARE = 0.5  # of the largest reachable distance, where MARGIN itself is not reachable
 SOLVABLE = 1e-9  # relative residual of V = beta Jp up to which the equation counts as solvable
-RADIUS_STEPS = 12  # bisections for the smallest radius that a refusal names
 
 
 @method("convex", "any base, arm and task: semidefinite program, with a bound on the algebraic loop's radius")
@@ -43,6 +42,8 @@ def convex(
     radius: float = RADIUS,
     margin: float = MARGIN,
     objective: str | None = None,
+    lag: float | None = None,
+    lag_share: float = SHARE_OF_DAMPING,
     gains: Gains | None = None,
 ) -> Compensator:
     """Least change of the arm's mobility that makes the plant positive real, under rho(Ms^-1 E) <= radius.  [theory §7]
@@ -57,8 +58,11 @@ def convex(
         "mode-by-mode", on two base joints, each mode aligned with a beta of its own: positive real at the base's own
         damping; or "least-misaligned", as near to that as the bounds let it: positive real where the certificate says
         so, and never further from it than without E. Left out: the first of the three that is feasible
-    Raises Infeasible, naming what binds: the frequencies, and for the first two the radius (with the smallest that
-    would do) or the equation itself.
+    lag : total lag of the measured acceleration [s] that may take at most `lag_share` of each mode's damping, by the
+        delay law of theory §8. Exact for one base joint and mode by mode; else the shapes it speaks of are re-solved in
+        passes, so that a refusal is no proof. Every answer obeys it with its own modes
+    Raises Infeasible, naming what binds: the frequencies, and for the first two the lag (with the largest that would
+    do), the radius (with the smallest that would do) or the equation itself.
     """
     if pose.arm.m == 0:
         raise InputError("convex: the base is rigid, so there is no mode to shape.")
@@ -70,6 +74,7 @@ def convex(
         )
     if not 0.0 <= margin < np.inf:
         raise InputError(f"margin: {margin!r} must be 0 or more. {MARGIN:g} is the usual choice.")
+    law = checked_law(lag, lag_share)
     program = MobilityProgram(pose, checked_radius(radius), *_bounds(pose.arm.m, natural_frequency, highest_frequency))
     misfit = program.misfit()
     solvable, still = misfit <= SOLVABLE, misfit == np.inf
@@ -78,15 +83,15 @@ def convex(
             f"V = beta Jp has no solution for {pose.arm.m} base joints, {pose.arm.n} arm joints and {pose.arm.k} task "
             f"rows (relative misfit {misfit:.2g}). Ask for the objective least-misaligned, or fewer rows."
         )
-    _check_frequencies(program)
-    aligned = _aligned(program, margin) if solvable and objective != "least-misaligned" else None
-    if aligned is not None:
-        E = program.gain(aligned)
+    check_frequencies(program)
+    E = one_beta(program, law, margin) if solvable and objective != "least-misaligned" else None
+    if E is not None:
         return certify(pose, "convex", E, target_residual=program.residual(E), gains=gains)
     if objective == "aligned" and not still:
-        raise Infeasible(_what_binds(program, _aligns))
-    each = _mode_by_mode(program, margin, objective)
-    E = _least_misaligned(program, margin) if each is None else each
+        raise Infeasible(what_binds(program, law, aligned))
+    each = _mode_by_mode(program, law, margin, objective)
+    E = _least_misaligned(program, law, margin) if each is None else each
+    check_obeyed(law, pose, E)
     missing, cautions = target_residual(pose, E), cautions_of_shortage(pose, E)
     return certify(pose, "convex", E, target_residual=missing, gains=gains, cautions=cautions)
 
@@ -101,73 +106,39 @@ def _bounds(m: int, lowest: float | None, highest: float | None) -> tuple[float 
     return low, high
 
 
-def _aligned(program: MobilityProgram, margin: float) -> Solution | None:
-    """The smaller change of the two sides; on each, the margin or half of what is reachable. None where neither is."""
-    found = []
-    for side in SIDES:
-        farthest = program.farthest(side)
-        if farthest is not None:
-            found.append(program.least_change(side, min(margin, SHARE * farthest)))
-    return min((one for one in found if one is not None), key=lambda one: one.value, default=None)
-
-
-def _mode_by_mode(program: MobilityProgram, margin: float, objective: str | None) -> Array | None:
+def _mode_by_mode(program: MobilityProgram, law: LagLaw | None, margin: float, objective: str | None) -> Array | None:
     """Each mode aligned with a beta of its own; None where that is not asked for, or neither asked for nor feasible."""
     if program.pose.arm.m != 2 or objective == "least-misaligned":
         return None
-    E = TwoModes(program).gain(margin)
+    E = TwoModes(program, law).gain(margin)
     if E is None and objective == "mode-by-mode":
-        raise Infeasible(_what_binds(program, _aligns_each))
+        raise Infeasible(what_binds(program, law, aligned_each))
     return E
 
 
-def _least_misaligned(program: MobilityProgram, margin: float) -> Array:
+def _least_misaligned(program: MobilityProgram, law: LagLaw | None, margin: float) -> Array:
     """Each mode near a beta of its own; then, where the frequencies are free, downhill from there and from E = 0."""
     pose = program.pose
     none = np.zeros((pose.arm.n, pose.arm.n))
     if program.bounded:
-        E = least_misalignment(program, margin)
+        E = least_misalignment(program.under(law), margin)
         check_no_worse(pose, E)
         return E
     if shortage_and_slope(pose, none)[0] == 0.0:  # a base that does not move the tip, for one
         return none
+    if law is not None:
+        return _lagged(program.under(law), law, margin)
     starts = (least_misalignment(program, margin), none)
     return least_lacking(pose, [descend(pose, program.radius, start)[1] for start in starts])
 
 
-def _what_binds(program: MobilityProgram, aligns: Callable[[MobilityProgram], bool]) -> str:
-    """Why an alignment fails inside the bounds. The frequencies by themselves were checked before."""
-    g, pose = program.radius, program.pose
-    if program.bounded and aligns(MobilityProgram(pose, g)):
-        frequencies = ", ".join(f"{mode.frequency:.4g}" for mode in modes(pose).modes)
-        return (
-            f"the natural frequencies bind: at radius {g:g} the modes can be aligned, and the frequencies can be had, "
-            f"but not both (without E they are {frequencies} rad/s). Ask for others, or for a larger radius."
-        )
-    mend = "Choose another pose, or ask for the objective least-misaligned."
-    low, high = g, 1.0 - 1e-6
-    if not aligns(MobilityProgram(pose, high)):
-        return f"no gain with an algebraic-loop radius below 1 aligns the modes here. {mend}"
-    for _ in range(RADIUS_STEPS):
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if aligns(MobilityProgram(pose, middle)) else (middle, high)
-    return f"the radius binds: gains that align the modes here have {high:.4f} or more, {g:g} is asked. {mend}"
-
-
-def _aligns(program: MobilityProgram) -> bool:
-    return any(program.farthest(side) is not None for side in SIDES)
-
-
-def _aligns_each(program: MobilityProgram) -> bool:
-    return TwoModes(program).widening() < -ROOM
-
-
-def _check_frequencies(program: MobilityProgram) -> None:
-    """The bounds on the frequencies, without any alignment. Raises Infeasible with what is reachable."""
-    if not program.bounded or program.reaches_frequencies():
-        return
-    slowest, fastest = program.reachable_frequencies()
-    raise Infeasible(
-        f"the natural frequencies bind: with radius {program.radius:g} the slowest mode cannot rise above "
-        f"{slowest:.4f} rad/s, nor the fastest fall below {fastest:.4f}. Ask for others, or for a larger radius."
-    )
+def _lagged(program: MobilityProgram, law: LagLaw, margin: float) -> Array:
+    """The same under a delay law, which the descents do not know: of them and their parts, the best that obeys it."""
+    pose, none = program.pose, np.zeros_like(program.box.L)
+    try:
+        starts = [least_misalignment(program, margin), none]
+    except Infeasible:  # no pass obeys the law
+        starts = [none]
+    ends = [*starts, *(descend(pose, program.radius, start)[1] for start in starts)]
+    parts = [part * E for E in ends for part in (1.0, *PARTS)]
+    return least_lacking(pose, [none, *(E for E in parts if obeys(law, pose, E))])

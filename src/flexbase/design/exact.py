@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import scipy.linalg
 
 from flexbase.checks import Array, positive_number
 from flexbase.control.compensator import Compensator
 from flexbase.design.certificate import certify
+from flexbase.design.exact_redundant import freest, lagged_bands, within
+from flexbase.design.lag_law import SHARE, LagLaw, check_obeyed, checked_law, fastest, words
 from flexbase.design.registry import method
 from flexbase.errors import Infeasible, InputError
 from flexbase.linear.aligned_gain import least_gain
@@ -21,9 +22,8 @@ from flexbase.model.task import Gains
 from flexbase.plant import Pose
 
 OBJECTIVES = ("least-gain", "least-radius")
-BORDER = 0.1  # redundant arms: distance of alpha from [-1, 0], where the mode would be lost to force or tip
-ATTAINED = 1.0 - 1e-9  # square of the radius below which the best self-motion exists
-UNDRIVEN = 1e-9  # cosine of y and t below which the self-motion does not drive the base
+STILL = 1e-12  # of the Jacobian, up to which the base does not move the tip
+BELOW = 1.0 - 1e-6  # of the fastest frequency that the delay law allows: the default stays under it
 
 
 class Compensability(NamedTuple):
@@ -61,6 +61,8 @@ def exact(
     *,
     natural_frequency: float | None = None,
     objective: str = "least-gain",
+    lag: float | None = None,
+    lag_share: float = SHARE,
     gains: Gains | None = None,
 ) -> Compensator:
     """Gain that aligns the one base mode, w = 0, at a chosen natural frequency.  [theory §7]
@@ -69,93 +71,94 @@ def exact(
     undoes the base's is free by a self-motion, and is chosen for the smallest radius; the objective decides the rest.
 
     natural_frequency : wanted omega_1 [rad/s]; if left out, a quarter above the present one, or just above the lowest
-        reachable one where that is higher
+        reachable one where that is higher; never above what `lag` allows
     objective : "least-gain" (smallest ||E||_F) or "least-radius" (smallest algebraic-loop radius, theory §8)
+    lag : total lag of the measured acceleration [s] that may take at most `lag_share` of the mode's damping, by the
+        delay law of theory §8; it bounds the reachable frequencies from above. Left out: no such constraint
     Raises Infeasible if no gain exists, or none at this frequency: the message says which, and what does exist.
     """
     if objective not in OBJECTIVES:
         raise InputError(f'objective: "{objective}" is unknown. Give one of {", ".join(OBJECTIVES)}.')
-    facts, frequency = (_redundant if pose.arm.n > pose.arm.k else _square)(pose, natural_frequency)
+    law = checked_law(lag, lag_share)
+    facts, frequency = (_redundant if pose.arm.n > pose.arm.k else _square)(pose, natural_frequency, law)
     alpha = _alpha(pose, facts, frequency)
     if objective == "least-gain":
         E: Array = np.array(least_gain(pose.M[1:, 1:].tolist(), facts.z.tolist(), facts.y.tolist(), alpha))
     else:
         E = _least_radius(pose, facts, alpha)
+    check_obeyed(law, pose, E)
     residual = (pose.M[1:, 1:] - E) @ facts.z - facts.y / alpha
     relative = float(np.linalg.norm(residual) / np.linalg.norm(facts.y / alpha))
     return certify(pose, "exact", E, target_residual=relative, gains=gains)
 
 
-def _square(pose: Pose, natural_frequency: float | None) -> tuple[Compensability, float]:
-    """z, y and the frequency where there are as many task rows as arm joints. Raises Infeasible."""
+def reachable(pose: Pose, lag: float | None = None, lag_share: float = SHARE) -> tuple[float, float]:
+    """Bounds of the frequencies with w = 0 [rad/s], the lower one excluded. Assumes m = 1, k = n.  [theory §7, §8]
+
+    Infinite where there is no bound. Raises Infeasible where no gain aligns the mode, or none that the lag allows.
+    """
+    facts, law = _compensable(pose), checked_law(lag, lag_share)
+    highest = _fastest(pose, facts, law)
+    if law is not None and highest <= facts.slowest:
+        raise Infeasible(
+            f"the lag binds: {words(law)}, and no aligning gain obeys that here: with w = 0 only frequencies above "
+            f"{facts.slowest:.4f} rad/s exist, and the lag allows none above {highest:.4f}. Ask for a smaller lag, a "
+            "larger share, or another pose."
+        )
+    return facts.slowest, highest
+
+
+def _compensable(pose: Pose) -> Compensability:
     facts = compensability(pose)
     if not np.isfinite(facts.slowest):
         raise Infeasible(
             f"no gain aligns the mode here: y.z = {facts.product:.4g} kg m^2 lies neither above 0 nor between "
             f"-{pose.M[0, 0]:.4g} and 0. Choose another pose: a map of the measure compensability shows where."
         )
+    return facts
+
+
+def _fastest(pose: Pose, facts: Compensability, law: LagLaw | None) -> float:
+    """Y y = alpha z whatever the objective, so the law is one of alpha alone.  [theory §8]"""
+    if law is None:
+        return float("inf")
+    return fastest(law, pose, float(facts.z @ pose.M[1:, 1:] @ facts.z) / facts.product**2)
+
+
+def _square(pose: Pose, natural_frequency: float | None, law: LagLaw | None) -> tuple[Compensability, float]:
+    """z, y and the frequency where there are as many task rows as arm joints. Raises Infeasible."""
+    facts = _compensable(pose)
+    highest = float("inf") if law is None else reachable(pose, *law)[1]
     if natural_frequency is None:
-        return facts, _default_frequency(pose, facts)
-    return facts, positive_number("natural frequency", natural_frequency, "rad/s")
+        usual = _default_frequency(pose, facts)
+        return facts, usual if usual <= highest else max(BELOW * highest, 0.5 * (facts.slowest + highest))
+    frequency = positive_number("natural frequency", natural_frequency, "rad/s")
+    _check_lag_allows(frequency, facts.slowest, highest, law)
+    return facts, frequency
 
 
-def _redundant(pose: Pose, natural_frequency: float | None) -> tuple[Compensability, float]:
+def _check_lag_allows(frequency: float, slowest: float, highest: float, law: LagLaw | None) -> None:
+    if law is not None and frequency > highest:
+        raise Infeasible(
+            f"natural frequency {frequency:g} rad/s is out of reach: {words(law)}, so with w = 0 only frequencies "
+            f"above {slowest:.4f} and up to {highest:.4f} rad/s exist here. Ask for one of them, or for a smaller lag."
+        )
+
+
+def _redundant(pose: Pose, natural_frequency: float | None, law: LagLaw | None) -> tuple[Compensability, float]:
     """The same with more arm joints than task rows: V = beta Jp reads X t = y, Jv t = alpha Jp, with beta = -alpha."""
     _check_base(pose)
+    if not np.abs(pose.J[:, 0]).max() > STILL * np.abs(pose.J).max():
+        raise Infeasible("exact: the base does not move the tip here, so there is nothing to align. No gain is needed.")
     slowest = float(np.sqrt(pose.arm.base.stiffness[0, 0] / pose.M[0, 0]))
     if natural_frequency is None:
-        frequency = RAISE * modes(pose)[0].frequency
+        usual = RAISE * modes(pose)[0].frequency
+        frequency = usual if law is None else within(lagged_bands(pose, law), usual)
     else:
         frequency = positive_number("natural frequency", natural_frequency, "rad/s")
     _check_reachable(pose, frequency, slowest)
-    return _freest(pose, frequency, slowest), frequency
-
-
-def _freest(pose: Pose, frequency: float, slowest: float) -> Compensability:
-    """z and y for the self-motion of the smallest radius: one eigenproblem.  [theory §7, §8]
-
-    With sigma = Mpp - Kp/omega^2 = y.t, the radius of the best E with X t = y is |L^-1 (Mhat - y y^T / sigma) t| over
-    |L^T t|, Ms = L L^T: homogeneous in t, which ranges over the span of one z and the arm's self-motions. alpha has to
-    lie outside [-1, 0]; where the best t's does not, t is best on one of the borders, kept BORDER away.
-    """
-    Mhat, y = pose.M[1:, 1:], -pose.M[1:, 0]
-    inertia = float(pose.M[0, 0] - pose.arm.base.stiffness[0, 0] / frequency**2)
-    span = np.column_stack([np.linalg.pinv(pose.J[:, 1:]) @ pose.J[:, 0], _null_space(pose.J[:, 1:])])
-    driven, first = span.T @ y, np.eye(span.shape[1])[0]
-    borders = [inertia * first - alpha * driven for alpha in (BORDER, -1.0 - BORDER)]
-    for bases in ([span], [span @ _null_space(border[None, :]) for border in borders]):
-        found = [
-            one for basis in bases if (one := _least_turned(pose, basis, Mhat - np.outer(y, y) / inertia)) is not None
-        ]
-        for _, t in sorted(found, key=lambda pair: pair[0]):
-            scaled = t * (inertia / float(y @ t))
-            alpha = float(np.linalg.lstsq(span, scaled, rcond=None)[0][0])
-            if not -1.0 <= alpha <= 0.0:
-                return Compensability(scaled / alpha, y, inertia / alpha, slowest)
-    raise Infeasible(
-        "no gain aligns the mode here: the arm's self-motion does not drive the base. Choose another pose."
-    )
-
-
-def _least_turned(pose: Pose, basis: Array, turn: Array) -> tuple[float, Array] | None:
-    """The t in a subspace with the smallest |L^-1 turn t| / |L^T t|, and that ratio; None where y.t = 0 there.
-
-    turn t = Ms t wherever y.t = 0, so 1 is only a limit, of ever larger self-motions (a low frequency). Then the t that
-    drives the base most for its inertia is taken.
-    """
-    Ms, y = arm_on_free_base(pose), -pose.M[1:, 0]
-    image, weight = turn @ basis, basis.T @ Ms @ basis
-    values, vectors = scipy.linalg.eigh(image.T @ np.linalg.solve(Ms, image), weight)
-    t = basis @ vectors[:, 0] if values[0] < ATTAINED else basis @ np.linalg.solve(weight, basis.T @ y)
-    if abs(float(y @ t)) <= UNDRIVEN * float(np.linalg.norm(y) * np.linalg.norm(t)):
-        return None
-    moved = turn @ t
-    return float(np.sqrt(moved @ np.linalg.solve(Ms, moved) / (t @ Ms @ t))), t
-
-
-def _null_space(A: Array) -> Array:
-    """Orthonormal columns that A, of full row rank, maps to zero."""
-    return np.asarray(np.linalg.svd(A)[2][len(A) :].T)
+    t, alpha = freest(pose, frequency, law)
+    return Compensability(t / alpha, -pose.M[1:, 0], float(-pose.M[1:, 0] @ t) / alpha, slowest), frequency
 
 
 def _check_base(pose: Pose) -> None:

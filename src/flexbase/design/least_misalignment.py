@@ -9,6 +9,7 @@ import scipy.linalg
 
 from flexbase.checks import Array
 from flexbase.design.descent import shortage_and_slope
+from flexbase.design.lag_law import obeys
 from flexbase.design.mobility_program import SIDES, MobilityProgram, Side
 from flexbase.errors import Infeasible
 from flexbase.linear.linearise import reduced_arrays
@@ -23,6 +24,7 @@ SMALLEST = 1e-3  # of |Jp phi|^2: floor of |a||b| in the weights, where a mode i
 def least_misalignment(program: MobilityProgram, margin: float) -> Array:
     """E of the smallest modal shortage found over the sign patterns of beta_i, Phi re-solved between passes.
 
+    The program's delay law is stated anew with Phi; only a gain that obeys it with its own modes is taken.
     Raises Infeasible where the constraints exclude each other.
     """
     m = program.pose.arm.m
@@ -34,9 +36,10 @@ def least_misalignment(program: MobilityProgram, margin: float) -> Array:
         if (E := _pass(program, none, pattern, margin)) is not None
     ]
     if not first:
-        raise Infeasible("the natural frequencies and the radius exclude each other. Ask for others.")
+        lag = "" if program.law is None else "the lag, "
+        raise Infeasible(f"{lag}the natural frequencies and the radius exclude each other. Ask for others.")
     first.sort(key=lambda entry: entry[0])
-    best = first[0][0], first[0][2]
+    found = [(value, E) for value, _, E in first]
     for start, pattern, E in first[:FINALISTS]:
         value = start
         for _ in range(PASSES - 1):
@@ -45,11 +48,13 @@ def least_misalignment(program: MobilityProgram, margin: float) -> Array:
                 break
             E, previous = following, value
             value = _missing(program, E)
-            if value < best[0]:
-                best = value, E
-            if value > (1.0 - SETTLED) * previous:
+            found.append((value, E))
+            if value > (1.0 - SETTLED) * previous and obeys(program.law, program.pose, E):
                 break
-    return best[1]
+    allowed = [one for one in found if obeys(program.law, program.pose, one[1])]
+    if not allowed:
+        raise Infeasible("the delay law binds: no pass ended in a gain whose own modes obey it. Ask for a smaller lag.")
+    return min(allowed, key=lambda one: one[0])[1]
 
 
 def _missing(program: MobilityProgram, E: Array) -> float:
@@ -58,6 +63,8 @@ def _missing(program: MobilityProgram, E: Array) -> float:
 
 def _pass(program: MobilityProgram, E: Array, pattern: tuple[Side, ...], margin: float) -> Array | None:
     """One convex problem at the mode shapes of E. c_i |V phi - beta Jp phi|^2 is then nearly |w_i| / omega_i."""
+    if program.law is not None:
+        program = program.under(program.law, E)
     reduced = reduced_arrays(program.pose, E)
     squares, shapes = scipy.linalg.eigh(program.Kp, reduced.S)
     tip = np.sum((program.Jp @ shapes) ** 2, axis=0)

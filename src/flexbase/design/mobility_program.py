@@ -9,6 +9,7 @@ import numpy as np
 
 from flexbase.checks import Array
 from flexbase.design.implementable import mobility_box
+from flexbase.design.lag_law import CLEAR, LagLaw, pumping, relief
 from flexbase.errors import Infeasible, import_extra
 from flexbase.plant import Pose
 
@@ -30,14 +31,38 @@ class Solution(NamedTuple):
     value: float
 
 
+class LaggedDirection(NamedTuple):
+    """pull |Z b|^2 - eased.Z b <= offset: the delay law of one shape, over 1 + r.  [theory §8]
+
+    driven : b = L^-1 Map psi, shape (n,)
+    size : |b|^2 / (1 + r), by which the law is eased
+    """
+
+    driven: Array
+    pull: float
+    eased: Array
+    offset: float
+    size: float
+
+
 class MobilityProgram:
     """Variables Z = L^T Y L (Mhat = L L^T) and beta; always the box of theory §8, optional bounds on the frequencies.
 
+    Optional too, the delay law, stated for the mode shapes under the gain `around` (none if left out): exact for one
+    base joint, whose shape cannot change.
     Rows and columns of V = beta Jp are scaled by the tip's mobility and the base's inertia, which leaves its solutions.
     Needs the extra "convex".
     """
 
-    def __init__(self, pose: Pose, radius: float, lowest: float | None = None, highest: float | None = None) -> None:
+    def __init__(
+        self,
+        pose: Pose,
+        radius: float,
+        lowest: float | None = None,
+        highest: float | None = None,
+        law: LagLaw | None = None,
+        around: Array | None = None,
+    ) -> None:
         self.cp: Any = import_extra("cvxpy", "convex")
         import_extra("clarabel", "convex")
         self.pose, self.radius, self.lowest, self.highest = pose, radius, lowest, highest
@@ -56,12 +81,21 @@ class MobilityProgram:
         root = np.linalg.cholesky(self.box.upper - self.box.lower)
         self.Z = self.box.lower + root @ self.Q @ root.T
         self.inside = [self.Q >> 0, np.eye(n) - self.Q >> 0]
-        self.frequency_bounds = self._frequency_bounds()
+        self.law = law
+        self.shapes = np.eye(m)
+        if law is not None and m > 1:
+            self.shapes = pumping(pose, np.zeros((n, n)) if around is None else around).shapes
+        self.shapes = self.shapes / np.sqrt(np.diag(self.shapes.T @ self.Mpp @ self.shapes))
+        self.bounds = [*self._frequency_bounds(), *self._delay_law()]
 
     @property
     def bounded(self) -> bool:
         """Whether the frequencies are bounded."""
         return self.lowest is not None or self.highest is not None
+
+    def under(self, law: LagLaw | None, around: Array | None = None) -> MobilityProgram:
+        """The same with another delay law, or with the law stated for the mode shapes under another gain."""
+        return MobilityProgram(self.pose, self.radius, self.lowest, self.highest, law, around)
 
     def gain(self, solution: Solution) -> Array:
         """E of a solution, after V = beta Jp is met to rounding by the nearest Z."""
@@ -91,7 +125,7 @@ class MobilityProgram:
         if not self._has_room([*equality, away]):
             return None
         near = side * beta <= FAR
-        self.solve(self.cp.Maximize(side * beta), [*self.inside, *self.frequency_bounds, *equality, near])
+        self.solve(self.cp.Maximize(side * beta), [*self.inside, *self.bounds, *equality, near])
         return float(side * beta.value) - (side > 0)
 
     def least_change(self, side: Side, margin: float) -> Solution | None:
@@ -99,9 +133,7 @@ class MobilityProgram:
         beta = self.cp.Variable()
         away = side * beta >= margin + (side > 0)
         change = self.cp.norm(self.Z - np.eye(len(self.B)), "fro")
-        value = self.solve(
-            self.cp.Minimize(change), [*self.inside, *self.frequency_bounds, *self._equality(beta), away]
-        )
+        value = self.solve(self.cp.Minimize(change), [*self.inside, *self.bounds, *self._equality(beta), away])
         return None if value is None else Solution(np.asarray(self.Z.value), float(beta.value), value)
 
     def least_mismatch(
@@ -113,7 +145,7 @@ class MobilityProgram:
         gap = self.A @ self.Z @ (self.B @ shapes) - cp.multiply(self.Jp @ shapes, cp.reshape(beta, (1, -1), order="C"))
         scaled = cp.multiply(gap, np.sqrt(weights)[None, :])
         away = cp.multiply(outer, beta) >= margin + (outer > 0)
-        value = self.solve(cp.Minimize(cp.sum_squares(scaled)), [*self.inside, *self.frequency_bounds, away])
+        value = self.solve(cp.Minimize(cp.sum_squares(scaled)), [*self.inside, *self.bounds, away])
         return None if value is None else Solution(np.asarray(self.Z.value), float("nan"), value)
 
     def reaches_frequencies(self) -> bool:
@@ -130,10 +162,10 @@ class MobilityProgram:
         return ends[0], ends[1]
 
     def widened(self, wider: Any) -> list[Any]:
-        """The box and the bounds on the frequencies, eased by `wider` of the box's width."""
+        """The box, the bounds on the frequencies and the delay law, eased by `wider` of the box's width."""
         eye = np.eye(len(self.B))
         box = [self.Q + wider * eye >> 0, (1.0 + wider) * eye - self.Q >> 0, wider >= -1.0]
-        return [*box, *self._frequency_bounds(wider)]
+        return [*box, *self._frequency_bounds(wider), *self._delay_law(wider)]
 
     def _frequency_bounds(self, wider: Any = 0.0) -> list[Any]:
         """omega >= lowest for all modes is S <= Kp / lowest^2, and so on: linear in Z; eased by `wider`. [theory §7]"""
@@ -149,6 +181,14 @@ class MobilityProgram:
                 self._scaled_inertia() - (self._frequency / self.highest) ** 2 * self._scaled_stiffness() + eased >> 0
             )
         return bounds
+
+    def _delay_law(self, wider: Any = 0.0) -> list[Any]:
+        """|Z b|^2 - b^T Z b <= r psi^T S psi with b = L^-1 Map psi, for each psi: convex in Z.  [theory §8]"""
+        return [
+            one.pull * self.cp.sum_squares(self.Z @ one.driven) - one.eased @ (self.Z @ one.driven)
+            <= one.offset + wider * one.size
+            for one in ([] if self.law is None else lagged_directions(self, self.law, self.shapes))
+        ]
 
     def _scaled_inertia(self) -> Any:
         """S in coordinates where Mpp = I."""
@@ -196,6 +236,18 @@ class MobilityProgram:
         if problem.status not in SOLVED:
             raise Infeasible(f"the solver Clarabel ended with {problem.status}. Give another pose or another radius.")
         return float(value)
+
+
+def lagged_directions(program: MobilityProgram, law: LagLaw, shapes: Array) -> list[LaggedDirection]:
+    """The delay law for shapes of any length, as columns, kept CLEAR by the share that a solver's rounding needs."""
+    found = []
+    for psi in shapes.T:
+        driven, base = program.B @ psi, program.pose.arm.base
+        r = float(relief(law, psi @ base.damping @ psi, psi @ base.stiffness @ psi))
+        size = float(driven @ driven) / (1.0 + r)
+        offset = r / (1.0 + r) * float(psi @ program.Mpp @ psi) - CLEAR * size
+        found.append(LaggedDirection(driven, 1.0 / (1.0 + r), (1.0 - r) / (1.0 + r) * driven, offset, size))
+    return found
 
 
 def symmetric_basis(n: int) -> Array:

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from flexbase.checks import Array
+from flexbase.design.lag_law import LagLaw
 from flexbase.design.mobility_program import (
     FAR,
     REACHED,
@@ -21,6 +22,7 @@ from flexbase.design.mobility_program import (
     SIDES,
     MobilityProgram,
     Side,
+    lagged_directions,
     least_change,
     symmetric_basis,
 )
@@ -45,10 +47,13 @@ class Cell(NamedTuple):
 
 
 class TwoModes:
-    """The programs of one pose, stated once for all angles. Assumes two base joints, and Kp > 0."""
+    """The programs of one pose, stated once for all angles. Assumes two base joints, Kp > 0, a program without a law.
 
-    def __init__(self, program: MobilityProgram) -> None:
-        self.program = program
+    law : the delay law, for both modes, if any
+    """
+
+    def __init__(self, program: MobilityProgram, law: LagLaw | None = None) -> None:
+        self.program, self.law = program, law
         cp = program.cp
         self.root = np.linalg.inv(np.linalg.cholesky(program.Kp)).T
         self.root *= np.sqrt(np.trace(program.Kp) / np.trace(program.Mpp))  # shapes of size 1 in the base's inertia
@@ -58,6 +63,8 @@ class TwoModes:
         n, k = len(program.B), len(program.A)
         self.driven, self.moved, self.coupling = cp.Parameter((n, 2)), cp.Parameter((k, 2)), cp.Parameter()
         self.outer, self.least = cp.Parameter(2), cp.Parameter()
+        self.lag_pull, self.lag_eased = cp.Parameter(2, nonneg=True), cp.Parameter((n, 2))
+        self.lag_offset, self.lag_size = cp.Parameter(2), cp.Parameter(2, nonneg=True)
         self.ratio, self.pull, self.offset = cp.Parameter(nonneg=True), cp.Parameter(nonneg=True), cp.Parameter()
         self.beta, self.wider = cp.Variable(2), cp.Variable()
         self.distance, self.follow = cp.Variable(2), cp.Variable((n, 2))  # of each beta from (0, 1); Z driven
@@ -114,6 +121,12 @@ class TwoModes:
         self.moved.value = self.to_tip @ program.Jp @ shapes
         self.coupling.value = float(shapes[:, 0] @ program.Mpp @ shapes[:, 1])
         self.outer.value, self.least.value = np.array(sides, dtype=float), REACHED
+        if self.law is not None:
+            laws = lagged_directions(program, self.law, shapes)
+            self.lag_pull.value, self.lag_offset.value, self.lag_size.value = (
+                np.array([getattr(one, name) for one in laws]) for name in ("pull", "offset", "size")
+            )
+            self.lag_eased.value = np.column_stack([one.eased for one in laws])
         ratio = damping_ratio_bound(shapes.T @ self.damping @ shapes)
         self.ratio.value = ratio
         if sides[0] == sides[1]:
@@ -135,13 +148,24 @@ class TwoModes:
             self.distance >= self.least,
             *self._bearable(same),
         ]
-        inside = [*program.inside, *program.frequency_bounds]
+        inside = [*program.inside, *program.bounds, *self._delay_law()]
         least, change = cp.Variable(), cp.norm(Z - np.eye(len(program.B)), "fro")
         return (
-            cp.Problem(cp.Minimize(self.wider), [*program.widened(self.wider), *far]),
+            cp.Problem(cp.Minimize(self.wider), [*program.widened(self.wider), *self._delay_law(self.wider), *far]),
             cp.Problem(cp.Maximize(least), [*inside, *far, self.distance >= least, least <= FAR]),
             cp.Problem(cp.Minimize(change), [*inside, *far]),
         )
+
+    def _delay_law(self, wider: Any = 0.0) -> list[Any]:
+        """The law for both modes, exact, as their shapes are given at each angle.  [theory §8]"""
+        if self.law is None:
+            return []
+        cp, follow = self.program.cp, self.follow
+        return [
+            self.lag_pull[i] * cp.sum_squares(follow[:, i]) - self.lag_eased[:, i] @ follow[:, i]
+            <= self.lag_offset[i] + wider * self.lag_size[i]
+            for i in (0, 1)
+        ]
 
     def _bearable(self, same: bool) -> list[Any]:
         """c_1/c_2 between t and 1/t, c = beta/(beta - 1): the damping then couples no mode into another's rest.
