@@ -7,13 +7,16 @@ import numpy as np
 import pytest
 
 import flexbase as fb
+from flexbase.control.sampled_loop import close_loop, sensitivities
 from flexbase.design.hardware import controller_for
-from flexbase.design.hardware.deflection import base_deflection, with_deflection
+from flexbase.design.hardware.deflection import base_deflection, search, with_deflection
 from flexbase.design.hardware.lqg import observer, regulator
 from flexbase.design.hardware.notch import DEPTH, notch_filter
+from flexbase.design.hardware.sampled import UNSTABLE
 from flexbase.design.hardware.shaping import design_plant, task_shape
 from flexbase.errors import Infeasible, InputError
 from flexbase.linear.discrete import feedback
+from flexbase.linear.disk_margin import disk_margin
 from flexbase.linear.margins import arm_on_free_base
 from flexbase.model.sensing import Sensing
 from systems.random_plants import random_pose
@@ -96,6 +99,36 @@ def test_base_deflection_is_seen_in_time(paper_pose: fb.Pose) -> None:
         y = np.concatenate([e, arm_rate * t, np.zeros(2)])
         out, x = seen.C @ x + seen.D @ y, seen.A @ x + seen.B @ y
     assert out == pytest.approx([base, rate], rel=1e-9)
+
+
+def test_the_search_looks_at_the_loop_itself(paper_pose: fb.Pose) -> None:
+    """Radius and slopes by E's entries, at an unstable E: those of the loop closed by the controller, to 1e-4."""
+    sensing, gains = Sensing(), paper_pose.arm.gains
+    assert gains is not None
+    look, basis = search(paper_pose, sensing, gains)
+    x = np.array([-0.4, 0.1, -0.3])
+
+    def radius(at: np.ndarray) -> float:
+        E = np.tensordot(at, basis, 1)
+        return close_loop(paper_pose, with_deflection(paper_pose, sensing, gains, E)).radius
+
+    here = look(x)
+    values, slopes = here.groups[0]
+    assert radius(x) > 1.0
+    assert values[0] == pytest.approx(radius(x), rel=1e-9)
+    assert here.value == pytest.approx(UNSTABLE + radius(x), rel=1e-9)
+    differences = [(radius(x + step) - radius(x - step)) / 2e-6 for step in 1e-6 * np.eye(len(x))]
+    assert slopes[0] == pytest.approx(differences, rel=1e-4, abs=1e-6)
+
+
+def test_the_search_ends_better_than_it_starts(paper_pose: fb.Pose) -> None:
+    """At 4 kHz: a disk margin above that of no E, which is stable there."""
+    sensing, gains = Sensing(rate=4000.0), paper_pose.arm.gains
+    assert gains is not None
+    plain = with_deflection(paper_pose, sensing, gains, np.zeros((2, 2)))
+    found = controller_for(paper_pose, "deflection", sensing)
+    before, after = (min(disk_margin(one).alpha for one in sensitivities(paper_pose, by)) for by in (plain, found))
+    assert after > 1.2 * before
 
 
 def test_deflection_refuses_what_the_tip_does_not_show() -> None:

@@ -7,71 +7,82 @@ tau_a = (I - E Ms^-1)^-1 [tau~ + E Ms^-1 Map Mpp^-1 (Kp q_p + Dp q_p')],  q_p = 
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize import minimize
 
 from flexbase.checks import Array, check_symmetric, finite_array
 from flexbase.control.hardware import GOOD_MARGIN
 from flexbase.control.sampled_controller import SampledController, pd_with_gain
+from flexbase.control.sampled_loop import plant_at_one_rate, plants_in_a_period
+from flexbase.design.hardware.minimax import Landscape, descend
 from flexbase.design.hardware.registry import hardware_method
+from flexbase.design.hardware.sampled import landscape
 from flexbase.design.hardware.stiffest import best_of
-from flexbase.design.hardware.trial import Robots, Trial, robots_at
+from flexbase.design.hardware.trial import Trial, robots_at
 from flexbase.design.registry import design
 from flexbase.errors import FlexbaseError, FlexbaseWarning, Infeasible, InputError
-from flexbase.linear.discrete import Discrete, delay, parallel, series, side_by_side, static
+from flexbase.linear.affine_loop import AffineLoop
+from flexbase.linear.discrete import Discrete, delay, series, side_by_side, static
 from flexbase.linear.margins import arm_on_free_base
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
 
 SEEN = 1e-6  # smallest to largest singular value of Jp, below which the tip does not tell the base's deflection
-ENOUGH = 0.6  # disk margin beyond which speed counts
-EVALUATIONS = 60  # of each descent
-WHOLE = 2  # joints up to which all entries of E are free; else a span of three matrices
+SHARE = 0.4  # of the ideal design, where the second descent starts
+LOOKS = 60  # of each descent
 
 
 @hardware_method(
     "deflection", "the compensator from the base's deflection: no accelerometer, but an accurate Kp and Jp"
 )
 def deflection(pose: Pose, sensing: Sensing, gains: Gains, *, E: Array | None = None) -> SampledController:
-    """Task PD and E without acceleration, E chosen for the sampled loop by Nelder and Mead's search.
+    """Task PD and E without acceleration, E chosen for the sampled loop.
 
-    Minimises -min(disk margin, 0.6) + 0.05 min(time constant / 50 ms, 3), or the spectral radius where the loop is
-    unstable, over the entries of E (more than two joints: over a span of three matrices), from no E and from 0.4 times
-    the ideal design. A slower task sensor counts as its mean delay.
+    The objective and the descent are those of `sampled`, over the entries of E, from none and from 0.4 times the ideal
+    design; of both ends the stiffest accepted is taken. A slower task sensor counts as its mean delay.
 
     E : shape (n, n), symmetric; no search then
     Raises Infeasible where the tip does not show the base's deflection; InputError.
     """
     _check_seen(pose)
-    robots = robots_at(pose, sensing)
-    if E is not None:
+    if E is None:
+        look, basis = search(pose, sensing, gains)
+        tried = [np.tensordot(descend(look, start, LOOKS).x, basis, 1) for start in _starts(pose)]
+    else:
         given = finite_array("E", E)
         if given.shape != (pose.arm.n, pose.arm.n):
             raise InputError(
                 f"E: shape {given.shape} given, {(pose.arm.n, pose.arm.n)} needed, one row for each arm joint."
             )
         check_symmetric("E", given, "kg m^2 or kg")
-        found = [Trial(with_deflection(pose, sensing, gains, given), robots)]
-    else:
-        basis, starts = _span(pose)
-        found = [_descend(pose, sensing, gains, robots, basis, start) for start in starts]
+        tried = [given]
+    robots = robots_at(pose, sensing)
+    found = [Trial(with_deflection(pose, sensing, gains, one), robots) for one in tried]
     return best_of(found, GOOD_MARGIN, pose).controller
 
 
 def with_deflection(pose: Pose, sensing: Sensing, gains: Gains, E: Array) -> SampledController:
     """Task PD with an E that acts through the base's deflection. Raises numpy.linalg.LinAlgError where E = Ms."""
-    m = pose.arm.m
-    felt = E @ np.linalg.inv(arm_on_free_base(pose))
-    gain = np.asarray(np.linalg.inv(np.eye(len(E)) - felt))
-    pull = np.asarray(felt @ pose.M[m:, :m] @ np.linalg.inv(pose.M[:m, :m]))
-    law = pd_with_gain(pose, sensing, gains, None, "deflection").system
-    base = series(
-        base_deflection(pose, sensing), static(np.asarray(pull @ np.hstack([pose.K[:m, :m], pose.D[:m, :m]])), law.step)
-    )
-    system = series(parallel(law, base), static(gain, law.step))
+    eye = np.eye(len(E))
+    gain = np.linalg.inv(eye - E @ np.linalg.inv(arm_on_free_base(pose)))
+    law = static(np.hstack([gain, gain - eye]), sensing.step)
+    system = series(signals(pose, sensing, gains), law)
     return SampledController("deflection", pose, sensing, system, None, {"gain": E.tolist()})
+
+
+def signals(pose: Pose, sensing: Sensing, gains: Gains) -> Discrete:
+    """From measurements to the task PD's torques (n) and the base's pull on the arm (n).
+
+    With G = (I - E Ms^-1)^-1 the torques are G times the first and G - I times the second.
+    """
+    n, m, h = pose.arm.n, pose.arm.m, sensing.step
+    pull = pose.M[m:, :m] @ np.linalg.solve(pose.M[:m, :m], np.hstack([pose.K[:m, :m], pose.D[:m, :m]]))
+    law = pd_with_gain(pose, sensing, gains, None, "deflection").system
+    base = series(base_deflection(pose, sensing), static(np.asarray(pull), h))
+    split = static(np.vstack([np.eye(pose.arm.k + 2 * n)] * 2), h)
+    return series(split, side_by_side(law, base))
 
 
 def base_deflection(pose: Pose, sensing: Sensing) -> Discrete:
@@ -95,23 +106,34 @@ def _check_seen(pose: Pose) -> None:
         )
 
 
-def _span(pose: Pose) -> tuple[list[Array], list[Array]]:
-    """Matrices whose combinations E is sought in, of the size of Ms, and two starts."""
-    Ms, n, m = arm_on_free_base(pose), pose.arm.n, pose.arm.m
-    root = np.linalg.cholesky(Ms)
-    ideal = _ideal(pose)
-    if n <= WHOLE:
-        pairs = [(i, j) for i in range(n) for j in range(i, n)]
-        basis = [root @ _symmetric(n, i, j) @ root.T for i, j in pairs]
-        share = np.linalg.solve(root, np.linalg.solve(root, ideal).T)
-        return basis, [np.zeros(len(basis)), 0.4 * np.array([share[pair] for pair in pairs])]
-    return [Ms, pose.M[m:, m:] - Ms, ideal], [np.zeros(3), np.array([0.0, 0.0, 0.4])]
+def search(pose: Pose, sensing: Sensing, gains: Gains) -> tuple[Callable[[Array], Landscape], Array]:
+    """The objective and its slopes at x, and what E = sum of x_i basis_i is made of, in units of Ms."""
+    n, k = pose.arm.n, pose.arm.k
+    Ms = arm_on_free_base(pose)
+    Ls, eye = np.linalg.cholesky(Ms), np.eye(n)
+    entries = np.array([np.outer(eye[i], eye[j]) for i, j in _pairs(n)])
+    basis = Ls @ np.maximum(entries, entries.swapaxes(1, 2)) @ Ls.T
+    plants = [plant.select(inputs=list(range(n))) for plant in plants_in_a_period(pose, sensing)]
+    loop = AffineLoop(plants, plant_at_one_rate(pose, sensing), signals(pose, sensing, gains), tuple(range(k + n)))
+    per_E = np.linalg.inv(Ms)
+
+    def look(x: Array) -> Landscape:
+        gain = np.linalg.inv(eye - np.tensordot(x, basis, 1) @ per_E)
+        slopes = gain @ basis @ (per_E @ gain)
+        return landscape(loop, np.hstack([gain, gain - eye]), np.concatenate([slopes, slopes], axis=2))
+
+    return look, basis
 
 
-def _symmetric(n: int, i: int, j: int) -> Array:
-    one = np.zeros((n, n))
-    one[i, j] = one[j, i] = 1.0
-    return one
+def _pairs(n: int) -> list[tuple[int, int]]:
+    return [(i, j) for i in range(n) for j in range(i, n)]
+
+
+def _starts(pose: Pose) -> list[Array]:
+    """No E, and a share of the ideal design."""
+    Ls, pairs = np.linalg.cholesky(arm_on_free_base(pose)), _pairs(pose.arm.n)
+    share = SHARE * np.linalg.solve(Ls, np.linalg.solve(Ls, _ideal(pose)).T)
+    return [np.zeros(len(pairs)), np.array([share[pair] for pair in pairs])]
 
 
 def _ideal(pose: Pose) -> Array:
@@ -122,29 +144,3 @@ def _ideal(pose: Pose) -> Array:
             return design(pose).E
         except FlexbaseError:
             return np.zeros((pose.arm.n, pose.arm.n))
-
-
-def _descend(pose: Pose, sensing: Sensing, gains: Gains, robots: Robots, basis: list[Array], start: Array) -> Trial:
-    best: list[tuple[float, Trial]] = []
-
-    def value(x: Array) -> float:
-        E = sum(weight * part for weight, part in zip(x, basis, strict=True))
-        try:
-            trial = Trial(with_deflection(pose, sensing, gains, np.asarray(E)), robots)
-            size = _objective(trial, sensing.step)
-        except np.linalg.LinAlgError:
-            return 1e3
-        if not best or size < best[0][0]:
-            best[:] = [(size, trial)]
-        return size
-
-    simplex = np.vstack([start, start + 0.2 * np.eye(len(start))])
-    minimize(value, start, method="Nelder-Mead", options={"maxfev": EVALUATIONS, "initial_simplex": simplex})
-    return best[0][1]
-
-
-def _objective(trial: Trial, step: float) -> float:
-    if trial.radius >= 1.0:
-        return 10.0 + trial.radius
-    slow = -step / float(np.log(max(trial.radius, 1e-12)))
-    return -min(trial.rough_margin, ENOUGH) + 0.05 * min(slow / 0.05, 3.0)

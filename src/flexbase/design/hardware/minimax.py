@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import linprog
+from scipy.optimize import Bounds, LinearConstraint, milp
 
 from flexbase.checks import Array
 
@@ -63,8 +63,9 @@ def _step(here: Landscape, width: float) -> tuple[Array, float]:
         rows.append(np.hstack([slopes, level]))
         bounds.append(-values)
     cost = np.concatenate([np.zeros(size), np.ones(count)])
-    box = [(-width, width)] * size + [(None, None)] * count
-    solved = linprog(cost, A_ub=np.vstack(rows), b_ub=np.concatenate(bounds), bounds=box, method="highs")
+    box = np.concatenate([np.full(size, width), np.full(count, np.inf)])
+    model = LinearConstraint(np.vstack(rows), ub=np.concatenate(bounds))
+    solved = milp(cost, constraints=model, bounds=Bounds(-box, box))  # all continuous: less around it than in linprog
     if solved.x is None:
         return np.zeros(size), 0.0
     before = sum(float(values.max()) for values, _ in here.groups)

@@ -32,6 +32,7 @@ ENOUGH_MARGIN = 0.6  # disk margin beyond which more is not asked for
 SLOW, SLOW_WEIGHT, SLOWEST = 0.05, 0.05, 3.0  # [s]: 0.05 min(tau / 50 ms, 3) is added to the objective
 UNSTABLE = 10.0  # beside the radius: worse than every stable loop
 SHARE = 0.4  # of the ideal design, where the second descent starts
+TRIED = 12  # looks from each start, before the best goes on
 GUESSES, SPREAD = 2, 0.3  # random starts, and the size of their entries in units of Ms
 SCALES = ("stiffness", "damping", "joint-damping")
 MATRICES = "matrices"
@@ -56,9 +57,9 @@ def sampled(
     A redundant arm's self-motion is damped as `pd_with_gain` damps it without E.
 
     Minimises -min(margin, 0.6) + 0.05 min(tau / 50 ms, 3), tau the slowest time constant; where the loop is unstable,
-    its spectral radius. Descends by sequential linear programmes with exact slopes from no E, from 0.4 times the
-    ideal design and from two random gains (always the same). E is symmetric; nothing else is asked of it: the sampled
-    loop tells whether it can be built.
+    its spectral radius. Descends by sequential linear programmes with exact slopes: some steps from no E, from 0.4
+    times the ideal design and from two random gains (always the same), then on from the best. E is symmetric; nothing
+    else is asked of it: the sampled loop tells whether it can be built.
 
     free : of "E", "stiffness" and "damping" (a factor on each gain, up to 4), "joint-damping" (a factor on Ms, up to
         400/s), "matrices" (every entry of the gains on tip rate, joint rate and acceleration)
@@ -68,9 +69,9 @@ def sampled(
     Raises InputError. `notes` has the objective, the looks, and the scales.
     """
     problem = SampledProblem(pose, sensing, gains, free, sensors, softest)
-    found = [descend(problem.look, start, most) for start in problem.starts()]
-    best = min(found, key=lambda one: one.value)
-    return problem.controller(best, sum(one.looks for one in found))
+    tried = [descend(problem.look, start, min(TRIED, most)) for start in problem.starts()]
+    best = descend(problem.look, min(tried, key=lambda one: one.value).x, most)
+    return problem.controller(best, best.looks + sum(one.looks for one in tried))
 
 
 class SampledProblem:
@@ -153,36 +154,7 @@ class SampledProblem:
 
     def look(self, x: Array) -> Landscape:
         """The objective and its slopes at x."""
-        theta = self.theta(x)
-        poles = self.loop.poles(theta)
-        radius = poles[0].value
-        if radius >= 1.0:
-            return Landscape(UNSTABLE + radius, (self._group(poles),))
-        margins = self.loop.margins(theta, self.sensors)
-        tightest = min(min(piece.value for piece in margins), ENOUGH_MARGIN)
-        # -log radius is the decay a sample: its inverse is the time constant, linear where it is largest
-        step = self.sensing.step
-        tau = -step / np.log(radius)
-        slow = [
-            Piece(
-                SLOW_WEIGHT * (-step / np.log(one.value)) / SLOW,
-                SLOW_WEIGHT / SLOW * step / (one.value * np.log(one.value) ** 2) * one.slope,
-            )
-            for one in poles
-            if 0.0 < one.value < 1.0
-        ]
-        flat = Piece(-ENOUGH_MARGIN, np.zeros_like(theta))
-        groups = [self._group([*(Piece(-one.value, -one.slope) for one in margins), flat])]
-        groups.append(
-            self._group(slow)
-            if tau < SLOWEST * SLOW
-            else self._group([Piece(SLOW_WEIGHT * SLOWEST, np.zeros_like(theta))])
-        )
-        return Landscape(-tightest + SLOW_WEIGHT * min(tau / SLOW, SLOWEST), tuple(groups))
-
-    def _group(self, pieces: Sequence[Piece]) -> tuple[Array, Array]:
-        values = np.array([piece.value for piece in pieces])
-        return values, np.array([np.tensordot(self.units, piece.slope, 2) for piece in pieces])
+        return landscape(self.loop, self.theta(x), self.units, self.sensors)
 
     def starts(self) -> list[Array]:
         """No E, a share of the ideal design where there is one, and random ones: the landscape has several valleys."""
@@ -219,6 +191,39 @@ class SampledProblem:
             joint_damping=float(JOINT_DAMPING * values.get("joint-damping", 0.0)),
         )
         return made
+
+
+def landscape(loop: AffineLoop, theta: Array, units: Array, sensors: bool = True) -> Landscape:
+    """The objective of `sampled` at a matrix, and its slopes by shares of the `units` that are added to it."""
+    poles = loop.poles(theta)
+    radius = poles[0].value
+    if radius >= 1.0:
+        return Landscape(UNSTABLE + radius, (_group(poles, units),))
+    margins = loop.margins(theta, sensors)
+    tightest = min(min(piece.value for piece in margins), ENOUGH_MARGIN)
+    # -log radius is the decay a sample: its inverse is the time constant, linear where it is largest
+    step = loop.averaged.step
+    tau = -step / np.log(radius)
+    slow = [
+        Piece(
+            SLOW_WEIGHT * (-step / np.log(one.value)) / SLOW,
+            SLOW_WEIGHT / SLOW * step / (one.value * np.log(one.value) ** 2) * one.slope,
+        )
+        for one in poles
+        if 0.0 < one.value < 1.0
+    ]
+    flat = Piece(-ENOUGH_MARGIN, np.zeros_like(theta))
+    if tau >= SLOWEST * SLOW:
+        slow = [Piece(SLOW_WEIGHT * SLOWEST, np.zeros_like(theta))]
+    groups = [*(Piece(-one.value, -one.slope) for one in margins), flat], slow
+    return Landscape(
+        -tightest + SLOW_WEIGHT * min(tau / SLOW, SLOWEST), tuple(_group(pieces, units) for pieces in groups)
+    )
+
+
+def _group(pieces: Sequence[Piece], units: Array) -> tuple[Array, Array]:
+    values = np.array([piece.value for piece in pieces])
+    return values, np.tensordot(np.array([piece.slope for piece in pieces]), units, ((1, 2), (1, 2)))
 
 
 def signals(pose: Pose, sensing: Sensing) -> Discrete:
