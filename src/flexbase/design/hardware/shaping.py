@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -72,6 +73,23 @@ def task_shape(pose: Pose, gains: Gains, scale: float, joint_weight: float, lag:
     if n > k:
         rows.append(np.hstack([np.zeros((n - k, k)), W, np.zeros((n - k, n))]))
     return Shape(np.hstack([Jv.T @ root, W.T]), np.vstack(rows), lag)
+
+
+class Weight(NamedTuple):
+    """A gain over frequency: `ratio` at rest, 1 above `turn`, `lead` above `corner` [rad/s]."""
+
+    ratio: float
+    turn: float
+    lead: float = 1.0
+    corner: float = 100.0
+
+    def sampled(self, step: float) -> Discrete:
+        """(s + turn)/(s + turn/ratio) times lead (s + corner/lead)/(s + corner); without the latter at lead 1."""
+        slow = slow_gain(self.ratio, self.turn / self.ratio, step)
+        if self.lead == 1.0:
+            return slow
+        quick = slow_gain(1.0 / self.lead, self.corner, step)
+        return series(series(slow, quick), static(np.array([[self.lead]]), step))
 
 
 def slow_gain(ratio: float, corner: float, step: float) -> Discrete:

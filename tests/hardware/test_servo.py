@@ -1,0 +1,70 @@
+"""The joints alone on a floating base: one scalar loop in every direction, and no base mode that could be wrong."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import flexbase as fb
+from flexbase.control.sampled_controller import SampledController
+from flexbase.control.sampled_loop import close_loop, loop_gain
+from flexbase.design.hardware.servo import floating_inertia, joint_servo
+from flexbase.design.hardware.shaping import Weight
+from flexbase.model.sensing import Sensing
+from flexbase.plant import Plant
+from flexbase.study.workspace import random_poses
+
+LAG = Weight(10.0, 20.0)
+
+
+def servo_at(pose: fb.Pose, sensing: Sensing, weight: Weight = LAG) -> SampledController:
+    gains = pose.arm.gains
+    assert gains is not None
+    system, _ = joint_servo(pose, sensing, gains, 1.0, weight.sampled(sensing.step))
+    return SampledController("servo", pose, sensing, system)
+
+
+@pytest.mark.parametrize("robot", ["ueda2003", "ur5e-pedestal", "panda-platform"])
+def test_floating_inertia_is_what_torques_meet(robot: str) -> None:
+    """The arm's block of M^-1, inverted: what the torques accelerate, base and all."""
+    pose = random_poses(fb.load(robot), 1, 1)[0]
+    m = pose.arm.m
+    assert floating_inertia(pose) == pytest.approx(np.linalg.inv(np.linalg.inv(pose.M)[m:, m:]), rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize("delay", [0, 1, 2])
+def test_directions_are_one_scalar_loop(delay: int) -> None:
+    """Ten times above the base's 110 rad/s all six eigenvalues of the loop gain are one, within 3 %."""
+    pose = random_poses(fb.load("ur5e-pedestal"), 1, 2)[0]
+    loop = loop_gain(pose, servo_at(pose, Sensing(compute_delay=delay)))
+    eigenvalues = np.linalg.eigvals(loop.transfer_function(np.array([1100.0]))[0])
+    assert np.abs(eigenvalues / eigenvalues.mean() - 1.0).max() < 0.03
+
+
+def test_order_and_what_it_hears() -> None:
+    """As the docstring counts the states; tip error and accelerations are not heard."""
+    pose = random_poses(fb.load("ur5e-pedestal"), 1, 2)[0]
+    for weight, states in ((LAG, 1), (Weight(20.0, 5.0, 3.0), 2)):
+        system = servo_at(pose, Sensing(), weight).system
+        assert system.order == 6 * (2 * states + 1 + 2)
+        heard = np.any(system.B != 0.0, axis=0) | np.any(system.D != 0.0, axis=0)
+        assert heard.tolist() == [False] * 3 + [True] * 6 + [False] * 6
+
+
+@pytest.mark.parametrize("stiffness", [0.3, 0.6, 1.0, 2.0, 4.0])
+def test_undamped_bases_of_any_stiffness_settle(stiffness: float) -> None:
+    """Its own joints are all that damps: five poses on a pedestal without damping, which is not as stiff as assumed."""
+    for pose in random_poses(fb.load("ur5e-pedestal"), 5, 0):
+        base = pose.arm.base
+        changed = replace(base, stiffness=stiffness * base.stiffness, damping=0.0 * base.damping)
+        there = Plant(replace(pose.arm, base=changed)).at(pose.q)
+        assert close_loop(there, servo_at(pose, Sensing())).radius < 1.0
+
+
+def test_weight_is_its_three_gains() -> None:
+    """The ratio at rest, 1 between, the lead at speed: within 5 % a decade from the corners."""
+    weight = Weight(20.0, 0.05, 3.0, 100.0).sampled(1e-4)
+    gain = np.abs(weight.transfer_function(np.array([1e-7, 1.0, 3000.0]))[:, 0, 0])
+    assert gain == pytest.approx([20.0, 1.0, 3.0], rel=0.05)
