@@ -362,3 +362,25 @@ def test_a_redundant_arm_whose_base_leaves_the_tip_at_rest_is_told_so():
     assert found
     with pytest.raises(Infeasible, match="the base does not move the tip here"):
         solve(found[0], "exact")
+
+
+def test_frequencies_and_lag_that_exclude_each_other_are_refused_in_words():
+    """Raising the slowest mode with a lag of 3 ms: a gain that obeys both by the witness, or what excludes it."""
+    pytest.importorskip("cvxpy")
+    met, refused = 0, 0
+    for seed in range(4):
+        for damping in ("full", "zero"):
+            pose = random_pose(seed, 2, 4, 3, damping=damping)
+            wanted = 1.02 * fb.modes(pose)[0].frequency
+            try:
+                E = solve(pose, "convex", lag=3e-3, natural_frequency=wanted).E
+            except Infeasible as refusal:
+                refused += 1
+                assert re.search("the lag, the natural|natural frequencies bind|delay law binds", str(refusal))  # noqa: PT017
+                continue
+            met += 1
+            squares, damped, form = law(pose, E)
+            assert np.sqrt(squares[0]) >= wanted * (1.0 - 1e-6)
+            assert np.all(3e-3 * squares * form <= SHARE * damped * (1.0 + 1e-6) + 1e-9 * squares * np.abs(E).max())
+    assert met >= 1
+    assert refused >= 1

@@ -49,8 +49,8 @@ SHOWN = {
     "verdict": "--tip --joints --elbow --branch --compensator --bandwidth --out --json",
     "design": "--tip --joints --elbow --branch --method --natural-frequency --highest-frequency --objective --radius "
     "--margin --lag --lag-share --derivatives --step --iterations --seed --stiffness --damping --rate --task-every "
-    "--task-rate --compute-delay --task-delay --encoder-counts --acceleration --accelerometer-lag --acceleration-filter "
-    "--acceleration-noise --task-noise --torque-limit --torque-slew --out --json",
+    "--task-rate --compute-delay --task-delay --encoder-counts --acceleration --accelerometer-lag "
+    "--acceleration-filter --acceleration-noise --task-noise --torque-limit --torque-slew --out --json",
     "hardware": "--tip --joints --elbow --branch --method --methods --stiffness --damping --rate "
     "--task-every --task-rate --compute-delay --task-delay --encoder-counts --acceleration --accelerometer-lag "
     "--acceleration-filter --acceleration-noise --task-noise --torque-limit --torque-slew "

@@ -65,6 +65,8 @@ def _pass(program: MobilityProgram, E: Array, pattern: tuple[Side, ...], margin:
     """One convex problem at the mode shapes of E. c_i |V phi - beta Jp phi|^2 is then nearly |w_i| / omega_i."""
     if program.law is not None:
         program = program.under(program.law, E)
+        if not program.reaches_frequencies():  # the solver is kept away from infeasible programs
+            return None
     reduced = reduced_arrays(program.pose, E)
     squares, shapes = scipy.linalg.eigh(program.Kp, reduced.S)
     tip = np.sum((program.Jp @ shapes) ** 2, axis=0)

@@ -149,7 +149,7 @@ class MobilityProgram:
         return None if value is None else Solution(np.asarray(self.Z.value), float("nan"), value)
 
     def reaches_frequencies(self) -> bool:
-        """Whether the box alone allows the bounds on the frequencies."""
+        """Whether the box by itself allows the bounds on the frequencies, and the delay law."""
         return self._has_room([])
 
     def reachable_frequencies(self) -> tuple[float, float]:
