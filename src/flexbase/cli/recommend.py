@@ -44,7 +44,7 @@ def recommend_controller(
     plant = load(robot)
     with progress_bar() as report:
         sensing = run.sensing(plant) if run.declared(plant) else None
-        found = recommend(pose.pose(plant), sensing=sensing, gains=loop.gains(plant), progress=report)
+        found = recommend(pose.pose(plant), sensing=sensing, gains=loop.gains(plant), workers=None, progress=report)
     content = found.to_dict()
     write_out(out, "recommend", found, content)
     put(document("recommend", content)) if json else put(

@@ -132,7 +132,7 @@ def recommend(
     sensing: Sensing | None = None,
     gains: Gains | None = None,
     methods: Sequence[str] | None = None,
-    workers: int | None = None,
+    workers: int | None = 1,
     progress: Callable[[str, int, int], None] = lambda what, done, total: None,
 ) -> Recommendation:
     """Judge every method at a pose as its loop would run, and choose.
@@ -141,7 +141,7 @@ def recommend(
     then the stiffness; a method that comes earlier in the registry is preferred where it reaches 80 % of it.
 
     sensing : the project's own if left out, else 1 kHz with one sample of delay
-    workers : processes, one a core if left out
+    workers : processes, None for one a core; a script that asks for several needs its `__main__` guard
     Raises InputError without task gains.
     """
     declared = sensing is not None or pose.arm.sensing is not None
