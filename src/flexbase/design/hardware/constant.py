@@ -17,7 +17,7 @@ from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
 
-SCALES = (1.0, 0.7, 0.5, 0.35, 0.25)  # of the task stiffness, tried from the first
+SCALES = (1.0, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125)  # of the task stiffness, tried from the first
 FIRST_FREE = ("E", "damping", "joint-damping")
 ALL = (*FIRST_FREE, MATRICES)
 
