@@ -35,18 +35,19 @@ def test_redundant_arm_on_a_hardly_damped_base(robot: str, index: int) -> None:
     assert verdict.survives
     assert verdict.has_margin
     assert (verdict.tip_stiffness or 0.0) > 0.5 * 2e4
+    assert (verdict.tip_correction or 0.0) > 0.9
 
 
-def test_leads_are_for_poses_without_margin() -> None:
-    """A Panda on the pedestal, at the one of twenty random poses where nothing but a lead has margins of 0.3."""
-    pose = random_poses(fb.load("panda-pedestal"), 2, 0)[1]
-    controller = controller_for(pose, "robust")
-    verdict = hardware_verdict(controller)
-    assert controller.notes["lead"] > 1.0
+def test_singular_direction_is_left_to_the_joints() -> None:
+    """A UR5e 14 mm/rad from singular: 0.1 rad turns a direction's sign, and only joints alone survive it."""
+    pose = random_poses(fb.load("ur5e-pedestal"), 60, 0)[34]
+    assert np.linalg.svd(pose.J[:, pose.arm.m :], compute_uv=False)[-1] < 0.02
+    verdict = hardware_verdict(controller_for(pose, "robust"))
     assert verdict.survives
     assert verdict.has_margin
-    plain = controller_for(pose, "robust", stages=[one for one in STAGES if one.weight.lead == 1.0])
-    assert not plain.notes["accepted"]
+    assert verdict.tip_correction == pytest.approx(0.0, abs=1e-9)
+    tip = controller_for(pose, "robust", stages=STAGES[:-1])
+    assert not tip.notes["accepted"]
 
 
 @pytest.mark.parametrize("margin", [0.3, 0.4, 0.5])

@@ -9,20 +9,20 @@ import pytest
 
 import flexbase as fb
 from flexbase.control.sampled_controller import SampledController
-from flexbase.control.sampled_loop import close_loop, loop_gain
-from flexbase.design.hardware.servo import floating_inertia, joint_servo
+from flexbase.control.sampled_loop import close_loop, loop_gain, tip_correction, tip_stiffness
+from flexbase.design.hardware.servo import Slow, floating_inertia, joint_servo
 from flexbase.design.hardware.shaping import Weight
 from flexbase.model.sensing import Sensing
 from flexbase.plant import Plant
 from flexbase.study.workspace import random_poses
 
-LAG = Weight(10.0, 20.0)
+PLAIN, SLOW = Weight(), Slow(10.0, 30.0)
 
 
-def servo_at(pose: fb.Pose, sensing: Sensing, weight: Weight = LAG) -> SampledController:
+def servo_at(pose: fb.Pose, sensing: Sensing, weight: Weight = PLAIN, slow: Slow | None = SLOW) -> SampledController:
     gains = pose.arm.gains
     assert gains is not None
-    system, _ = joint_servo(pose, sensing, gains, 1.0, weight.sampled(sensing.step))
+    system, _ = joint_servo(pose, sensing, gains, 1.0, weight.sampled(sensing.step), slow)
     return SampledController("servo", pose, sensing, system)
 
 
@@ -44,13 +44,24 @@ def test_directions_are_one_scalar_loop(delay: int) -> None:
 
 
 def test_order_and_what_it_hears() -> None:
-    """As the docstring counts the states; tip error and accelerations are not heard."""
+    """As the docstring counts the states; accelerations are not heard, the tip error only by the slow loop."""
     pose = random_poses(fb.load("ur5e-pedestal"), 1, 2)[0]
-    for weight, states in ((LAG, 1), (Weight(20.0, 5.0, 3.0), 2)):
-        system = servo_at(pose, Sensing(), weight).system
-        assert system.order == 6 * (2 * states + 1 + 2)
-        heard = np.any(system.B != 0.0, axis=0) | np.any(system.D != 0.0, axis=0)
-        assert heard.tolist() == [False] * 3 + [True] * 6 + [False] * 6
+    for weight, states in ((PLAIN, 0), (Weight(10.0, 20.0), 1), (Weight(20.0, 5.0, 3.0), 2)):
+        for slow in (SLOW, None):
+            system = servo_at(pose, Sensing(), weight, slow).system
+            assert system.order == 6 * (2 * states + 1 + 2) + (6 if slow else 0)
+            response = system.transfer_function(np.array([1.0]))[0]
+            assert np.any(response != 0.0, axis=0).tolist() == [slow is not None] * 3 + [True] * 6 + [False] * 6
+
+
+@pytest.mark.parametrize("robot", ["ueda2003", "ur5e-pedestal"])
+def test_tip_errors_are_taken_away(robot: str) -> None:
+    """Ten parts of eleven of an error that the joints do not show; none without the slow loop, which also stiffens."""
+    pose = random_poses(fb.load(robot), 2, 0)[1]
+    with_it, alone = (servo_at(pose, Sensing(), slow=slow) for slow in (SLOW, None))
+    assert tip_correction(pose, with_it) == pytest.approx(10.0 / 11.0, rel=1e-2)
+    assert tip_correction(pose, alone) == pytest.approx(0.0, abs=1e-9)
+    assert tip_stiffness(pose, with_it) == pytest.approx(11.0 * tip_stiffness(pose, alone), rel=0.02)
 
 
 @pytest.mark.parametrize("stiffness", [0.3, 0.6, 1.0, 2.0, 4.0])

@@ -78,18 +78,19 @@ def task_shape(pose: Pose, gains: Gains, scale: float, joint_weight: float, lag:
 class Weight(NamedTuple):
     """A gain over frequency: `ratio` at rest, 1 above `turn`, `lead` above `corner` [rad/s]."""
 
-    ratio: float
-    turn: float
+    ratio: float = 1.0
+    turn: float = 1.0
     lead: float = 1.0
     corner: float = 100.0
 
     def sampled(self, step: float) -> Discrete:
-        """(s + turn)/(s + turn/ratio) times lead (s + corner/lead)/(s + corner); without the latter at lead 1."""
-        slow = slow_gain(self.ratio, self.turn / self.ratio, step)
-        if self.lead == 1.0:
-            return slow
-        quick = slow_gain(1.0 / self.lead, self.corner, step)
-        return series(series(slow, quick), static(np.array([[self.lead]]), step))
+        """(s + turn)/(s + turn/ratio) times lead (s + corner/lead)/(s + corner), without what is 1."""
+        whole = static(np.array([[self.lead]]), step)
+        if self.ratio != 1.0:
+            whole = series(slow_gain(self.ratio, self.turn / self.ratio, step), whole)
+        if self.lead != 1.0:
+            whole = series(whole, slow_gain(1.0 / self.lead, self.corner, step))
+        return whole
 
 
 def slow_gain(ratio: float, corner: float, step: float) -> Discrete:
