@@ -52,11 +52,11 @@ def candidate(name: str, verdict: HardwareVerdict, **changes: object) -> Candida
 
 def test_grade_comes_before_stiffness(verdict: HardwareVerdict) -> None:
     good = {"disk_margin_torque": 0.5, "disk_margin_sensor": 0.5, "survives": True}
-    complete = candidate("soft", verdict, **good, tip_stiffness=1e4)
-    stiff = candidate("stiff", verdict, **(good | {"survives": False}), tip_stiffness=1e6)
+    complete = candidate("soft", verdict, **good, dynamic_stiffness=1e4)
+    stiff = candidate("stiff", verdict, **(good | {"survives": False}), dynamic_stiffness=1e6)
     assert choose_best([stiff, complete]) is complete
-    simple = candidate("simple", verdict, **good, tip_stiffness=0.81e5)
-    clever = candidate("clever", verdict, **good, tip_stiffness=1e5)
+    simple = candidate("simple", verdict, **good, dynamic_stiffness=0.81e5)
+    clever = candidate("clever", verdict, **good, dynamic_stiffness=1e5)
     assert choose_best([complete, simple, clever]) is simple  # earlier in the table, and 81 % as stiff
     assert choose_best([complete, clever]) is clever
     assert choose_best([candidate("none", verdict, stable=False), Candidate("no", "", None, "no gain")]) is None

@@ -11,6 +11,11 @@ def number(value: float | None, digits: int = 9) -> str:
     return "undefined" if value is None else f"{value + 0.0:.{digits}g}"
 
 
+def kilo(value: float) -> str:
+    """In thousands, to two digits or the whole number: 0.24, 8.6, 105."""
+    return f"{1e-3 * value:.0f}" if abs(value) >= 1e4 else f"{1e-3 * value:.2g}"
+
+
 def listed(values: Iterable[float], names: Iterable[str] = (), units: Iterable[str] = ()) -> str:
     """`q1 0.5 rad, q2 1 rad`."""
     entries = [number(value, 7) for value in values]

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from rich.console import RenderableType
 
+from flexbase.cli.digits import kilo
 from flexbase.cli.show import table, title
-from flexbase.study.hardware import HardwareStudy
+from flexbase.study.hardware import HardwareStudy, Row
 
 
 def tables(found: HardwareStudy) -> list[RenderableType]:
@@ -16,7 +17,7 @@ def tables(found: HardwareStudy) -> list[RenderableType]:
             f"{row.rate_hz / 1e3:g}k x{row.gain_scale:g}",
             *(f"{100.0 * share:.0f}" for share in (row.stable_share, row.margin_share, row.perturbed_share)),
             f"{100.0 * row.complete_share:.0f}",
-            "" if row.tip_stiffness is None else f"{1e-3 * row.tip_stiffness:.2g}",
+            _stiffness(row),
             "" if row.tip_correction is None else f"{100.0 * row.tip_correction:.0f}",
             "" if row.time_constant_s is None else f"{1e3 * row.time_constant_s:.0f}",
         ]
@@ -29,6 +30,13 @@ def tables(found: HardwareStudy) -> list[RenderableType]:
         "",
         table([*heading, "stiff\n[kN/m]", "tip\n[%]", "tau\n[ms]"], rows, words=(0, 1)),
         f"  Shares of {found.rows[0].poses} poses; half-width of the 95 % intervals up to {50 * widest:.0f} %.\n"
-        "  Medians where stable: static stiffness at the tip; tip, of a constant tip error\n"
-        "  that the joints do not show, what is taken away; tau, of the slowest motion.",
+        "  Medians where stable: stiff, of the tip, at rest and at its worst frequency; tip,\n"
+        "  of a constant tip error that the joints do not show, what is taken away; tau, of\n"
+        "  the slowest motion.",
     ]
+
+
+def _stiffness(row: Row) -> str:
+    if row.tip_stiffness is None or row.dynamic_stiffness is None:
+        return ""
+    return f"{kilo(row.tip_stiffness)} {kilo(row.dynamic_stiffness)}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rich.console import RenderableType
 
-from flexbase.cli.digits import number
+from flexbase.cli.digits import kilo, number
 from flexbase.cli.show import facts, table, title
 from flexbase.control.hardware import GOOD_MARGIN, HardwareVerdict
 from flexbase.study.comparison import Comparison
@@ -12,8 +12,7 @@ from flexbase.study.comparison import Comparison
 COLUMNS = (
     "method",
     "radius",
-    "torque\nmargin",
-    "sensor\nmargin",
+    "margins",
     "delay lag\n[ms]",
     "worst\nradius",
     "stiff\n[kN/m]",
@@ -23,9 +22,10 @@ COLUMNS = (
 NO_TORQUE = """  A robot that takes positions only cannot run these laws: they are torques. It
   can run admittance, well below the bandwidth of its own position loop."""
 LEGEND = f"""  * safe: stable, disk margins of {GOOD_MARGIN:g} at torques and sensors, and on all
-  changed robots stable. radius: spectral, a sample; below 1 it settles. delay,
-  lag: what all torques bear beyond their own, -: no limit. worst: when changed.
-  tip: of a constant tip error that the joints do not show, what is taken away."""
+  changed robots stable. radius: spectral, a sample; below 1 it settles; worst:
+  when changed. delay, lag: what all torques bear beyond their own, -: no limit.
+  stiff: of the tip, at rest and at its worst frequency. tip: of a constant tip
+  error that the joints do not show, what is taken away."""
 
 
 def tables(found: Comparison) -> list[RenderableType]:
@@ -50,18 +50,18 @@ def tables(found: Comparison) -> list[RenderableType]:
 
 
 def _row(one: HardwareVerdict) -> list[str]:
-    margins = [f"{one.disk_margin_torque:.2f}", f"{one.disk_margin_sensor:.2f}"] if one.stable else ["-", "-"]
+    margins = f"{one.disk_margin_torque:.2f} {one.disk_margin_sensor:.2f}" if one.stable else "-"
     bears = f"{_milli(one.delay_margin_s)} {_milli(one.lag_margin_s)}" if one.stable else "-"
     rest = ["-", "-", "-"]
-    if one.tip_stiffness is not None and one.tip_correction is not None and one.time_constant_s is not None:
+    if one.tip_stiffness is not None and one.dynamic_stiffness is not None:
         rest = [
-            f"{1e-3 * one.tip_stiffness:.3g}",
-            f"{100.0 * one.tip_correction:.0f}",
-            f"{1e3 * one.time_constant_s:.1f}",
+            f"{kilo(one.tip_stiffness)} {kilo(one.dynamic_stiffness)}",
+            f"{100.0 * (one.tip_correction or 0.0):.0f}",
+            f"{1e3 * (one.time_constant_s or 0.0):.1f}",
         ]
     good = one.has_margin and one.survives
     mark = "*" if good else ""
-    return [f"{one.method}{mark}", f"{one.spectral_radius:.4f}", *margins, bears, f"{one.worst_radius:.4f}", *rest]
+    return [f"{one.method}{mark}", f"{one.spectral_radius:.4f}", margins, bears, f"{one.worst_radius:.4f}", *rest]
 
 
 def _milli(seconds: float | None) -> str:

@@ -9,7 +9,14 @@ from typing import Any
 import numpy as np
 
 from flexbase.control.sampled_controller import SampledController
-from flexbase.control.sampled_loop import close_loop, loop_gain, sensitivities, tip_correction, tip_stiffness
+from flexbase.control.sampled_loop import (
+    close_loop,
+    dynamic_stiffness,
+    loop_gain,
+    sensitivities,
+    tip_correction,
+    tip_stiffness,
+)
 from flexbase.control.sampled_plant import Changed, changed_pose, eight_changes
 from flexbase.linear.disk_margin import disk_margin
 from flexbase.linear.loop_margins import delay_margin, lag_margin
@@ -30,6 +37,7 @@ class HardwareVerdict:
     worst_radius, worst_change : largest spectral radius over the changed robots, and which one
     survives : whether all of the changed robots are stable; failed : those that are not
     tip_stiffness : smallest static stiffness at the tip [N/m or N m/rad]; None if unstable
+    dynamic_stiffness : smallest at any frequency; None if unstable
     tip_correction : share of a constant tip error, unseen by the joints, that is taken away at rest; None if unstable
     time_constant_s : of the slowest motion; None if unstable
     """
@@ -48,6 +56,7 @@ class HardwareVerdict:
     survives: bool
     failed: tuple[str, ...]
     tip_stiffness: float | None
+    dynamic_stiffness: float | None
     tip_correction: float | None
     time_constant_s: float | None
 
@@ -70,7 +79,7 @@ class HardwareVerdict:
             f"{self.method}: stable, time constant {1e3 * (self.time_constant_s or 0.0):.1f} ms\n"
             f"  disk margin {self.disk_margin_torque:.3f} at torques, {self.disk_margin_sensor:.3f} at sensors\n"
             f"  {delay}{kept}\n"
-            f"  static tip stiffness {self.tip_stiffness:.4g} N/m; "
+            f"  tip stiffness {self.tip_stiffness:.4g} N/m at rest, {self.dynamic_stiffness:.4g} N/m at worst; "
             f"corrects {100.0 * (self.tip_correction or 0.0):.0f} % of a tip error that the joints do not show"
         )
 
@@ -112,6 +121,7 @@ def hardware_verdict(
         survives=stable and all(one < 1.0 for one in radii),
         failed=tuple(change.label for change, one in zip(tried, radii, strict=True) if one >= 1.0),
         tip_stiffness=tip_stiffness(here, controller) if stable else None,
+        dynamic_stiffness=dynamic_stiffness(here, controller) if stable else None,
         tip_correction=tip_correction(here, controller) if stable else None,
         time_constant_s=-step / float(np.log(radius)) if stable and radius > 0.0 else None,
     )

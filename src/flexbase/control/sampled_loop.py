@@ -10,6 +10,7 @@ from flexbase.checks import Array
 from flexbase.control.sampled_controller import SampledController
 from flexbase.control.sampled_plant import sampled_plant
 from flexbase.linear.discrete import Discrete, delay, feedback, series, side_by_side, spectral_radius, static
+from flexbase.linear.disk_margin import grid_of, highest, spectral_norm
 from flexbase.linear.harmonic import periodic
 from flexbase.model.sensing import Sensing
 from flexbase.plant import Pose
@@ -129,16 +130,31 @@ def tip_correction(pose: Pose, controller: SampledController) -> float:
     return float(np.linalg.svd(answer, compute_uv=False)[-1])
 
 
+def dynamic_stiffness(pose: Pose, controller: SampledController) -> float:
+    """Smallest stiffness of the tip at any frequency: a force there moves it by no more. Assumes a stable loop.
+
+    A slower task sensor counts as the mean delay of its hold.
+    """
+    loop = _tip_loop(pose, controller).select(inputs=list(range(pose.arm.k)))
+    return 1.0 / highest(lambda w: spectral_norm(loop.transfer_function(w)), grid_of(loop))[0]
+
+
 def _at_rest(pose: Pose, controller: SampledController) -> Array:
     """Where the tip comes to rest by a constant force on it, and by a constant error of the task sensor, (k, 2k)."""
-    n, k = pose.arm.n, pose.arm.k
-    plant = sampled_plant(pose, controller.sensing)
+    return _tip_loop(pose, controller).static_gain()
+
+
+def _tip_loop(pose: Pose, controller: SampledController) -> Discrete:
+    """The closed loop from forces on the tip (k) and errors of the task sensor (k) to where the tip really is (k)."""
+    n, k, sensing = pose.arm.n, pose.arm.k, controller.sensing
+    late = sensing.task_delay + sensing.task_every // 2
+    plant = sampled_plant(pose, replace(sensing, task_every=1, task_delay=late))
     seen = plant.select(list(range(k + 2 * n)))
     offset = np.eye(len(seen.C), k)
     widened = replace(seen, B=np.hstack([seen.B, np.zeros((seen.order, k))]), D=np.hstack([seen.D, offset]))
     loop = feedback(widened, controller.system, external=2 * k)
     true = np.hstack([plant.C[k + 2 * n :], np.zeros((k, loop.order - plant.order))])
-    return np.asarray(true @ np.linalg.solve(np.eye(loop.order) - loop.A, loop.B[:, n:]))
+    return Discrete(loop.A, loop.B[:, n:], true, np.zeros((k, 2 * k)), plant.step)
 
 
 def _uses(system: Discrete, channel: int) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -37,14 +38,20 @@ def disk_margin(sensitivity: Discrete) -> DiskMargin:
     are on it.
     """
     shifted = replace(sensitivity, D=sensitivity.D - 0.5 * np.eye(len(sensitivity.D)))
-    frequencies = grid_of(sensitivity)
+    size, where = highest(lambda w: structured_norm(shifted.transfer_function(w)), grid_of(sensitivity))
+    return DiskMargin(1.0 / size, where)
+
+
+def highest(size: Callable[[Array], Array], frequencies: Array) -> tuple[float, float]:
+    """The largest value over sorted frequencies and, near it, between them; and where [rad/s]."""
+    best = (0.0, 0.0)
     for _ in range(1 + ZOOMS):
-        sizes = structured_norm(shifted.transfer_function(frequencies))
+        sizes = size(frequencies)
         top = int(np.argmax(sizes))
-        size, where = float(sizes[top]), float(frequencies[top])
+        best = max(best, (float(sizes[top]), float(frequencies[top])))
         ends = frequencies[max(top - 1, 0)], frequencies[min(top + 1, len(frequencies) - 1)]
         frequencies = np.linspace(*ends, ZOOMED)
-    return DiskMargin(1.0 / size, where)
+    return best
 
 
 def grid_of(system: Discrete, points: int = POINTS) -> Array:

@@ -11,7 +11,7 @@ import numpy as np
 from flexbase.checks import choose
 from flexbase.control.hardware import GOOD_MARGIN
 from flexbase.control.sampled_controller import SampledController
-from flexbase.control.sampled_loop import close_loop, sensitivities, tip_correction, tip_stiffness
+from flexbase.control.sampled_loop import close_loop, dynamic_stiffness, sensitivities, tip_correction, tip_stiffness
 from flexbase.control.sampled_plant import changed_pose, eight_changes
 from flexbase.design.hardware import HARDWARE_METHODS
 from flexbase.errors import FlexbaseError, FlexbaseWarning, InputError
@@ -37,7 +37,8 @@ SETTINGS = tuple(Setting(*pair) for pair in ((1e3, 0.25), (1e3, 1.0), (1e3, 4.0)
 class Outcome(NamedTuple):
     """One method at one pose: whether there is a design, what it bears, and what it does to the tip; NaN if unstable.
 
-    stiffness, correction : `tip_stiffness` and `tip_correction`; time : constant of the slowest motion [s]
+    stiffness, dynamic, correction : `tip_stiffness`, `dynamic_stiffness`, `tip_correction`
+    time : constant of the slowest motion [s]
     """
 
     designed: bool
@@ -45,6 +46,7 @@ class Outcome(NamedTuple):
     margin: bool
     perturbed: bool
     stiffness: float = float("nan")
+    dynamic: float = float("nan")
     correction: float = float("nan")
     time: float = float("nan")
 
@@ -56,8 +58,8 @@ class Row:
     margin_share : stable with both margins; perturbed_share : stable for the nominal and every changed robot
     complete_share : all three at once; no_design_share : poses where the method finds no controller
     tip_stiffness : median of the smallest static stiffness where stable [N/m]; None where it never is
-    tip_correction, time_constant_s : medians too: share of a tip error, unseen by the joints, that is taken away at
-        rest; and of the slowest motion
+    dynamic_stiffness, tip_correction, time_constant_s : medians too: smallest stiffness at any frequency; share of a
+        tip error, unseen by the joints, that is taken away at rest; of the slowest motion
     *_interval : 95 % intervals, exact
     """
 
@@ -71,6 +73,7 @@ class Row:
     complete_share: float
     no_design_share: float
     tip_stiffness: float | None
+    dynamic_stiffness: float | None
     tip_correction: float | None
     time_constant_s: float | None
     stable_interval: tuple[float, float]
@@ -176,6 +179,7 @@ def judge(pose: Pose, controller: SampledController) -> Outcome:
         margin=margin >= GOOD_MARGIN,
         perturbed=perturbed,
         stiffness=tip_stiffness(pose, controller),
+        dynamic=dynamic_stiffness(pose, controller),
         correction=tip_correction(pose, controller),
         time=-controller.sensing.step / float(np.log(radius)),
     )
@@ -199,6 +203,7 @@ def _row(name: str, setting: Setting, outcomes: Sequence[Outcome]) -> Row:
         float(np.mean(complete)),
         float(np.mean([not one.designed for one in outcomes])),
         _median([one.stiffness for one in settling]),
+        _median([one.dynamic for one in settling]),
         _median([one.correction for one in settling]),
         _median([one.time for one in settling]),
         share_interval(sum(stable), count),

@@ -105,9 +105,9 @@ class Recommendation:
             f"{'Use' if best.grade == 3 else 'Use with care'}: {best.method}, {best.purpose} ({clock}, {said}).",
             f"Why: {_merit(best)}; disk margins {verdict.disk_margin_torque:.2f} at torques, "
             f"{verdict.disk_margin_sensor:.2f} at sensors. " + _comparison(best, others),
-            f"Cost: static tip stiffness {verdict.tip_stiffness:.3g} N/m, time constant "
-            f"{1e3 * (verdict.time_constant_s or 0.0):.0f} ms, torque noise {best.torque_noise:.3g} N m; "
-            f"{100.0 * _correction(best):.0f} % of a tip error that the joints do not show is taken away.",
+            f"Cost: tip stiffness {verdict.tip_stiffness:.3g} N/m at rest, {verdict.dynamic_stiffness:.2g} N/m at its"
+            f" worst frequency; time constant {1e3 * (verdict.time_constant_s or 0.0):.0f} ms; torque noise "
+            f"{best.torque_noise:.3g} N m. It corrects {100.0 * _correction(best):.0f} % of what only the tip shows.",
             f"Needs: {', '.join(best.sensors)}; base stiffness known to "
             + (f"{100.0 * best.stiffness_error:.0f} %." if best.stiffness_error else "better than 5 %."),
             f"Ideal loop: the plant is {'' if self.positive_real else 'not '}positive real here; "
@@ -138,7 +138,8 @@ def recommend(
     """Judge every method at a pose as its loop would run, and choose.
 
     First the grade (stable, with disk margins of 0.3, for all changed robots), then whether it corrects the tip at all,
-    then the stiffness; a method that comes earlier in the registry is preferred where it reaches 80 % of it.
+    then the stiffness at its worst frequency; a method that comes earlier in the registry is preferred where it reaches
+    80 % of it.
 
     sensing : the project's own if left out, else 1 kHz with one sample of delay
     workers : processes, None for one a core; a script that asks for several needs its `__main__` guard
@@ -188,7 +189,7 @@ def choose_best(candidates: Sequence[Candidate]) -> Candidate | None:
 
 
 def _stiffness(one: Candidate) -> float:
-    return 0.0 if one.verdict is None else one.verdict.tip_stiffness or 0.0
+    return 0.0 if one.verdict is None else one.verdict.dynamic_stiffness or 0.0
 
 
 def _correction(one: Candidate) -> float:
@@ -243,7 +244,7 @@ def _flaw(one: Candidate) -> str:
     if not one.verdict.stable:
         return "unstable"
     if one.grade == 3:
-        return f"runs too, at {one.verdict.tip_stiffness:.2g} N/m"
+        return f"runs too, at {one.verdict.dynamic_stiffness:.2g} N/m"
     if not one.verdict.survives:
         return f"fails with {one.verdict.worst_change}"
     return f"margin {_smaller_margin(one):.2f}"

@@ -31,7 +31,7 @@ from flexbase.plant import Pose
 
 
 class Stage(NamedTuple):
-    """Designs under one weight, tried together; the next stage is tried where the tip stays softer than `enough` Kp.
+    """Designs under one weight, tried together; the next is tried where the tip is somewhere softer than `enough` Kp.
 
     shapes : factor on the base stiffness designed for, joint weight beside the tip error; none: servos of the joints
     slow : the loop around these
@@ -41,12 +41,12 @@ class Stage(NamedTuple):
     weight: Weight
     shapes: tuple[tuple[float, float], ...] = ()
     slow: Slow | None = None
-    enough: float = 0.3
+    enough: float = 0.15
 
 
 STAGES = (
-    Stage(Weight(), slow=Slow(10.0, 30.0), enough=1.0),
-    Stage(Weight(), slow=Slow(5.0, 20.0), enough=1.0),
+    Stage(Weight(), slow=Slow(10.0, 30.0)),
+    Stage(Weight(), slow=Slow(5.0, 20.0)),
     Stage(Weight(3.0, 60.0), ((0.85, 1.2), (1.0, 0.7), (0.85, 0.0), (0.92, 0.3))),
     # where the arm shakes a base that is hardly damped: a lead, more margin for three to nine times the noise
     Stage(Weight(lead=3.0, corner=100.0), slow=Slow(5.0, 20.0)),
