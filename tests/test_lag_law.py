@@ -347,6 +347,7 @@ def test_options_are_checked(paper_pose):
         ({"lag": 0.0}, "lag: 0.0 is not a positive number"),
         ({"lag": float("nan")}, "lag"),
         ({"lag": 1e-4, "lag_share": 1.5}, "lag_share: 1.5 must be from 0 to 1"),
+        ({"lag_share": 0.3}, "without a lag"),
         ({"lag_share": -0.1}, "lag_share"),
         ({"lag_share": "half"}, "lag_share: 'half'"),
     ):

@@ -22,7 +22,8 @@ from flexbase.design.hardware import HARDWARE_METHODS, controller_for
 from flexbase.errors import FlexbaseError
 from flexbase.linear.discrete import Discrete, delay, series
 from flexbase.model.sensing import Sensing
-from systems.planar import PAPER_TIP
+from flexbase.model.task import Gains
+from systems.planar import PAPER_TIP, planar
 
 SYSTEMS = {
     "paper, 1 kHz": lambda: (fb.load("ueda2003").at_tip(PAPER_TIP), Sensing()),
@@ -155,6 +156,28 @@ def test_rigid_base_is_held(method: str, paper: fb.Plant) -> None:
     pose = fb.Plant(stiff).at(paper.at_tip(PAPER_TIP).q[1:])
     assert close_loop(pose, controller_for(pose, "none")).radius > 1.0
     assert close_loop(pose, controller_for(pose, method)).radius < 1.0
+
+
+@pytest.fixture(scope="module")
+def bolted() -> fb.Pose:
+    """An arm without base joints."""
+    with pytest.warns(fb.FlexbaseWarning, match="rigid"):
+        arm = planar([0.3, 0.25], m=0).arm
+    return fb.Plant(replace(arm, gains=Gains(1e4 * np.eye(2), 200.0 * np.eye(2)))).at([0.4, 0.9])
+
+
+SHAPE_THE_BASE = ("recursion", "exact", "convex", "deflection", "notch")
+
+
+@pytest.mark.parametrize("method", SHAPE_THE_BASE)
+def test_methods_that_shape_the_base_refuse_an_arm_without_one(method: str, bolted: fb.Pose) -> None:
+    with pytest.raises(FlexbaseError, match="rigid|no base mode"):
+        controller_for(bolted, method)
+
+
+@pytest.mark.parametrize("method", [name for name in HARDWARE_METHODS if name not in SHAPE_THE_BASE])
+def test_other_methods_hold_an_arm_without_a_base(method: str, bolted: fb.Pose) -> None:
+    assert hardware_verdict(controller_for(bolted, method), brief=True).stable
 
 
 def test_every_method_is_stable_somewhere() -> None:

@@ -79,3 +79,9 @@ def test_weight_is_its_three_gains() -> None:
     weight = Weight(20.0, 0.05, 3.0, 100.0).sampled(1e-4)
     gain = np.abs(weight.transfer_function(np.array([1e-7, 1.0, 3000.0]))[:, 0, 0])
     assert gain == pytest.approx([20.0, 1.0, 3.0], rel=0.05)
+
+
+def test_rows_of_different_units_are_corrected_alike() -> None:
+    """A SCARA's rotation is moved far more easily than its translations: of each ten parts of eleven are taken away."""
+    pose = random_poses(fb.load("scara"), 1, 0)[0]
+    assert tip_correction(pose, servo_at(pose, Sensing(), slow=SLOW)) == pytest.approx(10.0 / 11.0, abs=0.01)

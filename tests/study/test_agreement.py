@@ -155,3 +155,11 @@ def test_what_takes_a_verdict_away_is_named(moved):
     feeble = replace(case, controller=replace(case.controller, sensing=weak))
     assert not agreement_move.watch(feeble).settled
     assert "limits" in agreement_move.explain(feeble)["why"]
+
+
+def test_drives_that_do_not_move_the_tip_have_torque_too():
+    """A UR5e's last joint turns the tool in place: its drive is not dead."""
+    plant = fb.load("ur5e-pedestal")
+    case = draw_case(plant.at((0.0, -1.2, 1.6, -0.4, 1.5, 0.0)), 0, 0, 0, ("none",))
+    limits = agreement_move.prepared(case, 0).controller.sensing.torque_limit
+    assert min(limits) >= agreement_move.LEAST * case.controller.pose.M[-1, -1] > 0.0

@@ -30,9 +30,9 @@ def tables(found: HardwareStudy) -> list[RenderableType]:
         "",
         table([*heading, "stiff\n[kN/m]", "tip\n[%]", "tau\n[ms]"], rows, words=(0, 1)),
         f"  Shares of {found.rows[0].poses} poses; half-width of the 95 % intervals up to {50 * widest:.0f} %.\n"
-        "  Medians where stable: stiff, of the tip, at rest and at its worst frequency; tip,\n"
-        "  of a constant tip error that the joints do not show, what is taken away; tau, of\n"
-        "  the slowest motion.",
+        "  Medians where stable: stiff, of the tip, at rest and at its worst frequency (of\n"
+        "  a rotation in kN m/rad); tip, of a constant tip error that the joints do not\n"
+        "  show, what is taken away; tau, of the slowest motion.",
     ]
 
 

@@ -24,8 +24,8 @@ NO_TORQUE = """  A robot that takes positions only cannot run these laws: they a
 LEGEND = f"""  * safe: stable, disk margins of {GOOD_MARGIN:g} at torques and sensors, and on all
   changed robots stable. radius: spectral, a sample; below 1 it settles; worst:
   when changed. delay, lag: what all torques bear beyond their own, -: no limit.
-  stiff: of the tip, at rest and at its worst frequency. tip: of a constant tip
-  error that the joints do not show, what is taken away."""
+  stiff: of the tip, at rest and at its worst frequency; rotations in kN m/rad.
+  tip: of a constant tip error that the joints do not show, what is taken away."""
 
 
 def tables(found: Comparison) -> list[RenderableType]:
@@ -57,11 +57,15 @@ def _row(one: HardwareVerdict) -> list[str]:
         rest = [
             f"{kilo(one.tip_stiffness)} {kilo(one.dynamic_stiffness)}",
             f"{100.0 * (one.tip_correction or 0.0):.0f}",
-            f"{1e3 * (one.time_constant_s or 0.0):.1f}",
+            _short(1e3 * (one.time_constant_s or 0.0)),
         ]
     good = one.has_margin and one.survives
     mark = "*" if good else ""
     return [f"{one.method}{mark}", f"{one.spectral_radius:.4f}", margins, bears, f"{one.worst_radius:.4f}", *rest]
+
+
+def _short(value: float) -> str:
+    return f"{value:.0f}" if value >= 100.0 else f"{value:.1f}"
 
 
 def _milli(seconds: float | None) -> str:

@@ -9,13 +9,13 @@ import numpy as np
 from flexbase.checks import Array
 from flexbase.control.sampled_controller import SampledController
 from flexbase.control.sampled_plant import sampled_plant
-from flexbase.linear.discrete import Discrete, delay, feedback, series, side_by_side, spectral_radius, static
+from flexbase.linear.discrete import Discrete, feedback, series, spectral_radius
 from flexbase.linear.disk_margin import grid_of, highest, spectral_norm
 from flexbase.linear.harmonic import periodic
 from flexbase.model.sensing import Sensing
 from flexbase.plant import Pose
 
-LIFTED = 40  # samples in a period up to which margins are exact: some seconds there
+LIFTED = 100  # channels of a whole period up to which a slow task sensor is taken exactly: a second or two
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,14 +66,12 @@ def sensitivities(pose: Pose, controller: SampledController) -> tuple[Discrete, 
     """S = (I + L)^-1 at the torque commands, and at the sensors that the controller uses.
 
     With a slower task sensor both are periodic, and the sensor's value counts as the controller gets it, held; beyond
-    `LIFTED` samples a period, where that takes too long, its hold counts as its mean delay.
+    `LIFTED` channels, where that takes too long, its hold counts as its mean delay.
     """
     n, k = pose.arm.n, pose.arm.k
     used = [i for i in range(k + 2 * n) if _uses(controller.system, i)]
     system = controller.system.select(inputs=used)
-    sensing = controller.sensing
-    lifted = sensing.task_every <= LIFTED
-    period = plants_in_a_period(pose, sensing) if lifted else [plant_at_one_rate(pose, sensing)]
+    period = _whole_period(pose, _affordable(controller.sensing, max(n, len(used))))
     plants = [one.select(used, list(range(n))) for one in period]
     return (
         periodic([_sensitivity(one, system) for one in plants]),
@@ -97,10 +95,9 @@ def loop_gain(pose: Pose, controller: SampledController) -> Discrete:
 
 
 def plant_at_one_rate(pose: Pose, sensing: Sensing) -> Discrete:
-    """From torque commands (n) to measurements (k + 2n); a slower task sensor is late by its hold's average delay."""
+    """From torque commands (n) to measurements (k + 2n); a slower task sensor is late by its hold's mean delay."""
     n, k = pose.arm.n, pose.arm.k
-    plant = sampled_plant(pose, sensing).select(list(range(k + 2 * n)), list(range(n)))
-    return plant if sensing.task_every == 1 else _later(plant, list(range(k)), sensing.task_every // 2)
+    return sampled_plant(pose, _at_one_rate(sensing)).select(list(range(k + 2 * n)), list(range(n)))
 
 
 def plants_in_a_period(pose: Pose, sensing: Sensing) -> list[Discrete]:
@@ -108,11 +105,26 @@ def plants_in_a_period(pose: Pose, sensing: Sensing) -> list[Discrete]:
 
     Inputs are torque commands (n) and tip forces (k), outputs measurements (k + 2n).
     """
-    n, k = pose.arm.n, pose.arm.k
-    seen = sampled_plant(pose, sensing).select(list(range(k + 2 * n)))
+    measured = list(range(pose.arm.k + 2 * pose.arm.n))
+    return [one.select(measured) for one in _whole_period(pose, sensing)]
+
+
+def _whole_period(pose: Pose, sensing: Sensing) -> list[Discrete]:
+    """The same with the true displacement of the tip as further outputs (k)."""
+    plant = sampled_plant(pose, sensing)
     if sensing.task_every == 1:
-        return [seen]
-    return [_held(seen, k), *[_held(seen, k, hold=True)] * (sensing.task_every - 1)]
+        return [plant]
+    k = pose.arm.k
+    return [_held(plant, k), *[_held(plant, k, hold=True)] * (sensing.task_every - 1)]
+
+
+def _at_one_rate(sensing: Sensing) -> Sensing:
+    return replace(sensing, task_every=1, task_delay=sensing.mean_task_delay)
+
+
+def _affordable(sensing: Sensing, channels: int) -> Sensing:
+    """The sensing, or that of its mean delay where a whole period has too many channels."""
+    return sensing if sensing.task_every * channels <= LIFTED else _at_one_rate(sensing)
 
 
 def tip_stiffness(pose: Pose, controller: SampledController) -> float:
@@ -123,46 +135,44 @@ def tip_stiffness(pose: Pose, controller: SampledController) -> float:
 def tip_correction(pose: Pose, controller: SampledController) -> float:
     """Share of a constant tip error that the loop takes away at rest, though the joints do not show it.
 
-    1 for a task-space PD, 0 for a controller that only holds the joints. The smallest over all directions; task rows
-    count alike, so rows of different units mix. Assumes a stable loop.
+    1 for a task-space PD, 0 for a controller that only holds the joints, negative where some error grows. That of the
+    direction in which least is taken away; task rows count alike, so rows of different units mix. Assumes a stable
+    loop.
     """
-    answer = _at_rest(pose, controller)[:, pose.arm.k :]
-    return float(np.linalg.svd(answer, compute_uv=False)[-1])
+    k = pose.arm.k
+    return 1.0 - float(np.linalg.norm(np.eye(k) + _at_rest(pose, controller)[:, k:], 2))
 
 
 def dynamic_stiffness(pose: Pose, controller: SampledController) -> float:
     """Smallest stiffness of the tip at any frequency: a force there moves it by no more. Assumes a stable loop.
 
-    A slower task sensor counts as the mean delay of its hold.
+    A slower task sensor scatters a frequency into others; by root mean squares then.
     """
-    loop = _tip_loop(pose, controller).select(inputs=list(range(pose.arm.k)))
-    return 1.0 / highest(lambda w: spectral_norm(loop.transfer_function(w)), grid_of(loop))[0]
+    k = pose.arm.k
+    loops = _tip_loops(pose, controller, _affordable(controller.sensing, k))
+    loop = periodic([one.select(inputs=list(range(k))) for one in loops])
+    return 1.0 / highest(lambda w: spectral_norm(loop.transfer_function(w)), np.r_[0.0, grid_of(loop)])[0]
 
 
 def _at_rest(pose: Pose, controller: SampledController) -> Array:
     """Where the tip comes to rest by a constant force on it, and by a constant error of the task sensor, (k, 2k)."""
-    return _tip_loop(pose, controller).static_gain()
+    return _tip_loops(pose, controller, _at_one_rate(controller.sensing))[0].static_gain()
 
 
-def _tip_loop(pose: Pose, controller: SampledController) -> Discrete:
-    """The closed loop from forces on the tip (k) and errors of the task sensor (k) to where the tip really is (k)."""
-    n, k, sensing = pose.arm.n, pose.arm.k, controller.sensing
-    late = sensing.task_delay + sensing.task_every // 2
-    plant = sampled_plant(pose, replace(sensing, task_every=1, task_delay=late))
-    seen = plant.select(list(range(k + 2 * n)))
-    offset = np.eye(len(seen.C), k)
-    widened = replace(seen, B=np.hstack([seen.B, np.zeros((seen.order, k))]), D=np.hstack([seen.D, offset]))
-    loop = feedback(widened, controller.system, external=2 * k)
-    true = np.hstack([plant.C[k + 2 * n :], np.zeros((k, loop.order - plant.order))])
-    return Discrete(loop.A, loop.B[:, n:], true, np.zeros((k, 2 * k)), plant.step)
+def _tip_loops(pose: Pose, controller: SampledController, sensing: Sensing) -> list[Discrete]:
+    """Sample by sample of a period, the closed loop from tip forces (k) and sensor errors (k) to the true tip (k)."""
+    n, k = pose.arm.n, pose.arm.k
+    measured, loops = k + 2 * n, []
+    for plant in _whole_period(pose, sensing):
+        seen = plant.select(list(range(measured)))
+        error = np.hstack([seen.D, np.eye(measured, k)])
+        loop = feedback(
+            replace(seen, B=np.hstack([seen.B, np.zeros((seen.order, k))]), D=error), controller.system, external=2 * k
+        )
+        true = np.hstack([plant.C[measured:], np.zeros((k, controller.system.order))])
+        loops.append(Discrete(loop.A, loop.B[:, n:], true, np.zeros((k, 2 * k)), plant.step))
+    return loops
 
 
 def _uses(system: Discrete, channel: int) -> bool:
     return bool(np.any(system.B[:, channel]) or np.any(system.D[:, channel]))
-
-
-def _later(plant: Discrete, channels: list[int], samples: int) -> Discrete:
-    late = [
-        delay(1, samples, plant.step) if i in channels else static(np.eye(1), plant.step) for i in range(len(plant.C))
-    ]
-    return series(plant, side_by_side(*late))

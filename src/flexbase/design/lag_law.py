@@ -50,6 +50,8 @@ def checked_law(lag: object, share: object) -> LagLaw | None:
     """The law of two options; None without a lag. Raises InputError."""
     if isinstance(share, bool) or not isinstance(share, int | float) or not 0.0 <= share <= 1.0:
         raise InputError(f"lag_share: {share!r} must be from 0 to 1. {SHARE:g} of the damping is the usual choice.")
+    if lag is None and share != SHARE:
+        raise InputError(f"lag_share: {share:g} says nothing without a lag. Give lag too, in s.")
     return None if lag is None else LagLaw(positive_number("lag", lag, "s"), float(share))
 
 
@@ -71,7 +73,8 @@ def lag_limit(pose: Pose, E: Array) -> float | None:
 
     None where E takes none, or only beyond a second; 0 where it takes some from an undamped base. Without task loop and
     at first order: within some 4 zeta^2 of the change, to T of about 0.1 ms on the paper's arm; beyond, the law
-    over-predicts what a lag does.
+    over-predicts what a lag does. Assumes modes further apart than their damping: closer ones mix under a lag, and one
+    of them may be lost at half of this.
     """
     if pose.arm.m == 0:
         return None
@@ -114,7 +117,7 @@ def relief(law: LagLaw, damping: Any, stiffness: Any) -> Any:
 
 
 def fastest(law: LagLaw, pose: Pose, cost: float) -> float:
-    """Highest natural frequency of one aligned mode that obeys the law [rad/s]; infinite if any does.  [theory §8]
+    """Highest natural frequency of one aligned mode that obeys the law [rad/s].  [theory §8]
 
     Alignment fixes phi_a = t psi, X t = y, so phi_a^T E phi_a = (t^T Mhat t - u) psi^2 with u = y.t = Mpp - Kp/omega^2.
     Along one direction t^T Mhat t = cost u^2, so the law, cost u^2 - (1 - r) u <= r Mpp, holds up to its positive root.
@@ -125,5 +128,4 @@ def fastest(law: LagLaw, pose: Pose, cost: float) -> float:
     r = float(relief(law, base.damping[0, 0], base.stiffness[0, 0]))
     root = float(np.sqrt((1.0 - r) ** 2 + 4.0 * cost * r * inertia))
     driven = (1.0 - r + root) / (2.0 * cost) if r < 1.0 else 2.0 * r * inertia / (r - 1.0 + root)
-    remaining = inertia - driven
-    return float(np.sqrt(base.stiffness[0, 0] / remaining)) if remaining > 0.0 else float("inf")
+    return float(np.sqrt(base.stiffness[0, 0] / (inertia - driven)))

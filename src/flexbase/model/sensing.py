@@ -48,6 +48,11 @@ class Sensing:
         """Sampling interval [s]."""
         return 1.0 / self.rate
 
+    @property
+    def mean_task_delay(self) -> int:
+        """Samples by which the tip error is late, a slower sensor's hold counted as its mean, rounded up."""
+        return self.task_delay + self.task_every // 2
+
     def summary(self) -> str:
         """Clock, delays and the source of the acceleration, in a line."""
         task = "" if self.task_every == 1 else f", task sensor {self.rate / self.task_every:g} Hz"

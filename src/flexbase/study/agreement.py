@@ -19,7 +19,7 @@ from flexbase.plant import Plant, Pose
 from flexbase.study import agreement_move, agreement_nudge
 from flexbase.study.agreement_case import Case, Outcome, draw_case
 from flexbase.study.agreement_nudge import NEAR
-from flexbase.study.processes import one_blas_thread
+from flexbase.study.processes import check_workers, one_blas_thread
 from flexbase.study.workspace import random_poses
 from flexbase.trace.kernel import cores
 
@@ -214,8 +214,7 @@ def agreement_study(
         choose("method", name, HARDWARE_METHODS)
     if plant.arm.gains is None:
         raise InputError(f"{plant.name}: no task gains. Add a [control] table to the project.")
-    if workers is not None and workers < 1:
-        raise InputError(f"workers: {workers} given, at least 1 needed.")
+    check_workers(workers)
     drawn = random_poses(plant, poses, seed)
     with _mapper(workers or cores()) as each:
         cases, redrawn, undesigned = _balanced(drawn, seed, chosen, each, progress)

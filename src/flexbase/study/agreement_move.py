@@ -17,6 +17,7 @@ COUNTS = (2.0**17, 2.0**20, 2.0**23)  # a turn, or a metre
 TIP_NOISES = (0.0, 1e-6, 1e-5)  # m or rad
 ACCELERATION_NOISES = (0.0, 0.1, 1.0)  # rad/s^2 or m/s^2
 SATURATED = 5e-3  # m or rad: the tip error at which the task stiffness alone asks for all that a drive has
+LEAST = 5.0  # rad/s^2 or m/s^2 of a joint by itself: a drive gives no less, also where it does not move the tip
 SLEW = 200.0  # 1/s: from nothing to the limit in 5 ms
 APART = 0.3  # rad or m by which every joint is off at the start, at most
 SWITCH, PUSH, END = 0.5, 0.9, 5.0  # s: controller takes over; push begins; last sample
@@ -31,7 +32,8 @@ def prepared(case: Case, seed: int) -> Case:
     gains = arm.gains
     assert gains is not None  # checked by the study
     stiffness = case.scale * gains.stiffness
-    limits = SATURATED * np.abs(controller.pose.J[:, arm.m :].T @ stiffness).sum(axis=1)
+    pull = SATURATED * np.abs(controller.pose.J[:, arm.m :].T @ stiffness).sum(axis=1)
+    limits = np.maximum(pull, LEAST * np.diag(controller.pose.M)[arm.m :])
     sensing = replace(
         controller.sensing,
         encoder_counts=float(rng.choice(COUNTS)),

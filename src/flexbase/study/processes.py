@@ -10,6 +10,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from typing import TypeVar
 
+from flexbase.errors import InputError
 from flexbase.trace.kernel import cores
 
 Task = TypeVar("Task")
@@ -23,8 +24,9 @@ def in_processes(
 ) -> Iterator[tuple[int, Answer]]:
     """The number of each task and its answer, in any order; `workers` processes, one a core if left out.
 
-    With one worker, or few tasks, they are answered here. Warnings of the tasks are not shown.
+    With one worker, or few tasks, they are answered here. Warnings of the tasks are not shown. Raises InputError.
     """
+    check_workers(workers)
     count = cores() if workers is None else workers
     if count == 1 or len(tasks) <= FEW:
         for number, task in enumerate(tasks):
@@ -38,6 +40,12 @@ def in_processes(
         finally:
             for future in futures:
                 future.cancel()
+
+
+def check_workers(workers: int | None) -> None:
+    """Raise InputError unless it is a whole number from 1 up, or None."""
+    if workers is not None and (isinstance(workers, bool) or not isinstance(workers, int) or workers < 1):
+        raise InputError(f"workers: {workers!r} given, a whole number from 1 up is needed, or nothing for one a core.")
 
 
 @contextmanager

@@ -10,6 +10,7 @@ from flexbase.design.convex import convex
 from flexbase.design.exact import exact
 from flexbase.design.hardware.registry import hardware_method
 from flexbase.design.recursive import recursive
+from flexbase.errors import Infeasible
 from flexbase.linear.modal import modes
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
@@ -50,9 +51,15 @@ def _convex_gain(pose: Pose) -> Array:
 @lru_cache(maxsize=8)
 def _recursion_gain(pose: Pose) -> Array:
     """E depends on the pose alone, and studies ask for it at several rates."""
-    return recursive(pose, natural_frequency=modes(pose)[0].frequency + FASTER).E
+    return recursive(pose, natural_frequency=_wanted(pose)).E
 
 
 @lru_cache(maxsize=8)
 def _exact_gain(pose: Pose) -> Array:
-    return exact(pose, natural_frequency=modes(pose)[0].frequency + FASTER).E
+    return exact(pose, natural_frequency=_wanted(pose)).E
+
+
+def _wanted(pose: Pose) -> float:
+    if pose.arm.m == 0:
+        raise Infeasible(f"{pose.plant.name}: the base is rigid, so there is no mode to shape. Use none.")
+    return modes(pose)[0].frequency + FASTER

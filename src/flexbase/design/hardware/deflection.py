@@ -88,8 +88,7 @@ def signals(pose: Pose, sensing: Sensing, gains: Gains) -> Discrete:
 def base_deflection(pose: Pose, sensing: Sensing) -> Discrete:
     """q_p (m) and its rate by differences (m) from measurements (k + 2n); the joints wait for the late tip error."""
     n, k, m, h = pose.arm.n, pose.arm.k, pose.arm.m, sensing.step
-    wait = sensing.task_delay + sensing.task_every // 2
-    together = side_by_side(static(np.eye(k), h), delay(n, wait, h), static(np.zeros((0, n)), h))
+    together = side_by_side(static(np.eye(k), h), delay(n, sensing.mean_task_delay, h), static(np.zeros((0, n)), h))
     q_p = np.linalg.pinv(pose.J[:, :m]) @ np.hstack([np.eye(k), -pose.J[:, m:]])
     eye = np.eye(m)
     rates = Discrete(np.zeros((m, m)), eye, np.vstack([0.0 * eye, -eye / h]), np.vstack([eye, eye / h]), h)
@@ -98,6 +97,8 @@ def base_deflection(pose: Pose, sensing: Sensing) -> Discrete:
 
 def _check_seen(pose: Pose) -> None:
     m, k = pose.arm.m, pose.arm.k
+    if m == 0:
+        raise Infeasible(f"{pose.plant.name}: the base is rigid, so it has no deflection. Use none, or coprime.")
     sizes = np.linalg.svd(pose.J[:, :m], compute_uv=False)
     if m > k or sizes[-1] <= SEEN * sizes[0]:
         raise Infeasible(

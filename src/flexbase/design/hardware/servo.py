@@ -61,7 +61,7 @@ def joint_servo(
     w = float(np.sqrt(scale * np.trace(gains.stiffness @ mobility) / k))
     one, b_opt = _scalar(w, sensing, weight)
     L = np.asarray(w * np.linalg.cholesky(inertia))
-    towards = _towards(inertia, Jv, mobility)
+    towards = _towards(inertia, Jv, gains)
     goal = static(np.zeros((k, k)), sensing.step) if slow is None else side_by_side(*[slow.sampled(sensing.step)] * k)
     hears = side_by_side(
         series(goal, static(L.T @ towards, sensing.step)), static(np.hstack([L.T, np.zeros((n, n))]), sensing.step)
@@ -70,11 +70,14 @@ def joint_servo(
     return series(series(offset, side_by_side(*[one] * n)), static(L, sensing.step)), b_opt
 
 
-def _towards(inertia: Array, Jv: Array, mobility: Array) -> Array:
-    """Joint motions of least energy by which the tip moves as asked, shape (n, k)."""
-    k = len(mobility)
+def _towards(inertia: Array, Jv: Array, gains: Gains) -> Array:
+    """Joint motions of least energy by which the tip moves as asked, shape (n, k); task rows by their stiffness."""
+    k = len(Jv)
+    R = np.linalg.cholesky(gains.stiffness + 1e-9 * np.trace(gains.stiffness) * np.eye(k))
+    pulled = np.linalg.solve(inertia, Jv.T) @ R
+    mobility = R.T @ Jv @ pulled
     kept = mobility + SINGULAR * np.trace(mobility) / k * np.eye(k)
-    return np.asarray(np.linalg.solve(inertia, Jv.T) @ np.linalg.inv(kept))
+    return np.asarray(pulled @ np.linalg.inv(kept) @ R.T)
 
 
 def _lowpass(corner: float, gain: float, step: float) -> Discrete:

@@ -45,8 +45,7 @@ class Shape:
 
 def design_plant(pose: Pose, sensing: Sensing) -> Discrete:
     """The sampled plant without sensors of acceleration; a slower task sensor's hold counts as its mean delay."""
-    late = sensing.task_delay + sensing.task_every // 2
-    plain = replace(sensing, acceleration="encoders", task_every=1, task_delay=late)
+    plain = replace(sensing, acceleration="encoders", task_every=1, task_delay=sensing.mean_task_delay)
     n, k = pose.arm.n, pose.arm.k
     return sampled_plant(pose, plain).select(list(range(k + 2 * n)), list(range(n)))
 

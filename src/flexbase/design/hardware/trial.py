@@ -99,11 +99,6 @@ class Trial:
             self._seen[margin] = self.survives and self._seems_to_have(margin)
         return self._seen[margin]
 
-    @cached_property
-    def rough_margin(self) -> float:
-        """Smaller of both disk margins, on a grid; a little too large. Assumes a stable loop."""
-        return float(1.0 / max(structured_norm(_shifted(L)).max() for L in self._gains_around()))
-
     def _seems_to_have(self, margin: float) -> bool:
         return all(_clears(L, CAUTION * margin) for L in self._gains_around())
 
