@@ -146,6 +146,8 @@ def test_moves_are_the_same_controllers_with_noise_and_limits(moved, paper):
     assert found["agreement"] >= 0.9
     assert all("true of a nudge" in one["explanation"]["why"] for one in found["disagreements"])
     assert {case["seen"] for case in found["cases"]} <= {"at rest", "away", "diverged"}
+    assert 0 < found["complete"]["cases"] < sum(case.stable for case in moved.cases)
+    assert found["complete"]["settled"] == found["complete"]["cases"]
 
 
 def test_what_takes_a_verdict_away_is_named(moved):

@@ -19,6 +19,7 @@ def tables(found: Agreement) -> list[RenderableType]:
     """The confusion table, the errors, and each case that disagrees with what explains it."""
     nudged = found.trial == "nudge"
     counts, control, near = found.confusion(), found.constant_predictor(), found.borderline()
+    whole = found.complete()
     rows = [
         [f"called {a}", *(str(counts[f"predicted_{a}_{b}"]) for b in ("settled", "not_settled"))]
         for a in ("stable", "unstable")
@@ -26,6 +27,7 @@ def tables(found: Agreement) -> list[RenderableType]:
     said = [
         ("unstable, called stable", f"{100 * found.false_stable_rate:.1f} %"),
         ("stable, called unstable", f"{100 * found.false_unstable_rate:.1f} %"),
+        ("stable with margins, also changed", f"{whole['settled']} of {whole['cases']} settle"),
         ("within 0.001 of the border", f"{near['agreeing']} of {near['cases']} come true"),
         *([("growth, measured to promised", f"{100 * found.growth_error:.2g} % apart (median)")] * nudged),
         ("always saying " + control["says"], f"{100 * control['agreement']:.1f} %"),

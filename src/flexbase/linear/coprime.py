@@ -7,9 +7,9 @@ whose errors stay below b. McFarlane and Glover (1990); the formulas are those o
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg import solve_continuous_are
 
 from flexbase.checks import Array
+from flexbase.linear import riccati
 from flexbase.linear.discrete import Discrete, feedback
 from flexbase.linear.disk_margin import grid_of
 from flexbase.linear.second_order import StateSpace
@@ -28,8 +28,8 @@ def coprime_controller(plant: Discrete, factor: float = 1.1) -> tuple[Discrete, 
     A, B, C, D = continuous
     S, R = np.eye(B.shape[1]) + D.T @ D, np.eye(len(C)) + D @ D.T
     shifted = A - B @ np.linalg.solve(S, D.T @ C)
-    X = _riccati(shifted, B, C.T @ np.linalg.solve(R, C), S)
-    Z = _riccati(shifted.T, C.T, B @ np.linalg.solve(S, B.T), R)
+    X = riccati.continuous(shifted, B, C.T @ np.linalg.solve(R, C), S)
+    Z = riccati.continuous(shifted.T, C.T, B @ np.linalg.solve(S, B.T), R)
     largest = max(float(np.linalg.eigvals(X @ Z).real.max()), 0.0)
     b_opt = float((1.0 + largest) ** -0.5)
     gamma = factor / b_opt
@@ -38,13 +38,6 @@ def coprime_controller(plant: Discrete, factor: float = 1.1) -> tuple[Discrete, 
     gain = gamma**2 * np.linalg.solve(W.T, Z @ C.T)
     controller = StateSpace(np.asarray(A + B @ F + gain @ (C + D @ F)), np.asarray(gain), B.T @ X, -D.T)
     return to_discrete(controller, plant.step), b_opt
-
-
-def _riccati(A: Array, B: Array, Q: Array, R: Array) -> Array:
-    try:
-        return np.asarray(solve_continuous_are(A, B, Q, R))
-    except ValueError as fault:  # so scipy says where its Schur form cannot be put in order
-        raise np.linalg.LinAlgError(f"a Riccati equation could not be solved: {fault}") from fault
 
 
 def coprime_margin(plant: Discrete, controller: Discrete) -> float:

@@ -110,6 +110,11 @@ class Agreement:
         ]
         return {"within": NEAR, "cases": len(near), "agreeing": sum(a == b for a, b in near)}
 
+    def complete(self) -> dict[str, int]:
+        """Cases that are stable with good disk margins on all changed robots too, and how many of them settle."""
+        outcomes = [found.settled for case, found in zip(self.cases, self.outcomes, strict=True) if case.complete]
+        return {"cases": len(outcomes), "settled": sum(outcomes)}
+
     def constant_predictor(self) -> dict[str, Any]:
         """What always giving the commoner answer would score: the control of this experiment."""
         settled = float(np.mean([found.settled for found in self.outcomes]))
@@ -157,6 +162,7 @@ class Agreement:
             "false_unstable_rate": self.false_unstable_rate,
             "confusion": self.confusion(),
             "share_stable": self.share_stable,
+            "complete": self.complete(),
             "disagreements": self.disagreements(),
             "constant_predictor": self.constant_predictor(),
             "method_predictor": {"agreement": self.method_predictor()},

@@ -16,6 +16,7 @@ from flexbase.errors import FlexbaseError
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
+from flexbase.study.hardware import judge
 
 RATES = (1e3, 2e3, 4e3)
 SCALES = (1.0 / 16.0, 0.25, 1.0, 4.0)  # of the project's task gains: (s Kp, sqrt(s) Kv)
@@ -29,6 +30,7 @@ class Case:
 
     pose : where and on which robot it runs; change : how that differs, in words
     drive : torque that the drives give over what the design asks for
+    complete : stable there with good disk margins, and on all robots that are changed from it
     """
 
     number: int
@@ -39,6 +41,7 @@ class Case:
     controller: SampledController
     pose: Pose
     radius: float
+    complete: bool
 
     @property
     def stable(self) -> bool:
@@ -71,6 +74,7 @@ class Case:
             "joints": self.pose.q[self.pose.arm.m :].tolist(),
             "spectral_radius": self.radius,
             "predicted_stable": self.stable,
+            "complete": self.complete,
             "predicted_growth_per_s": self.rate,
         }
 
@@ -112,7 +116,11 @@ def draw_case(pose: Pose, number: int, attempt: int, seed: int, methods: tuple[s
             real = changed_pose(pose, change)
         except (FlexbaseError, np.linalg.LinAlgError):
             return None
-    return Case(number, method, scale, change.label, drive, controller, real, close_loop(real, controller).radius)
+    radius = close_loop(real, controller).radius
+    seen = judge(real, controller)
+    return Case(
+        number, method, scale, change.label, drive, controller, real, radius, bool(seen.margin and seen.perturbed)
+    )
 
 
 def _driven(controller: SampledController, drive: float) -> SampledController:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import solve_discrete_are
 
 from flexbase.checks import Array, positive_number
 from flexbase.control.sampled_controller import SampledController
 from flexbase.design.hardware.registry import hardware_method
 from flexbase.design.hardware.shaping import design_plant, task_shape
 from flexbase.errors import Infeasible
+from flexbase.linear import riccati
 from flexbase.linear.discrete import Discrete
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
@@ -54,9 +54,10 @@ def lqg(pose: Pose, sensing: Sensing, gains: Gains, *, noise: float = NOISE) -> 
 def regulator(plant: Discrete, Q: Array, R: Array, V: Array) -> Regulator:
     """Optimal feedback for the cost x^T Q x + u^T R u, and filter for unit noise at the inputs and V at the outputs."""
     A, B, C = plant.A, plant.B, plant.C
-    X = solve_discrete_are(A, B, Q, R)
-    P = solve_discrete_are(A.T, C.T, B @ B.T, V)
-    return Regulator(np.linalg.solve(R + B.T @ X @ B, B.T @ X @ A), np.linalg.solve(V + C @ P @ C.T, C @ P).T)
+    X = riccati.discrete(A, B, Q, R)
+    P = riccati.discrete(A.T, C.T, B @ B.T, V)
+    feedback, filtered = np.linalg.solve(R + B.T @ X @ B, B.T @ X @ A), np.linalg.solve(V + C @ P @ C.T, C @ P).T
+    return Regulator(np.asarray(feedback), np.asarray(filtered))
 
 
 def observer(plant: Discrete, found: Regulator) -> Discrete:
