@@ -22,4 +22,4 @@ for rate in (1000.0, 4000.0):
 gantry = fb.load(Path(__file__).with_name("gantry.toml"))
 for here in (pose, gantry.at_tip([0.6, 0.3, 0.3]), fb.load("ur5e-platform").at([0.0, -1.2, 1.6, -0.4, 1.5, 0.0])):
     print(f"\n{here.plant.name} at {here.tip.round(3).tolist()}")
-    print(recommend(here, methods=("none", "coprime")).summary())
+    print(recommend(here, methods=("none", "coprime", "robust")).summary())
