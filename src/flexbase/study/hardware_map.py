@@ -35,6 +35,8 @@ MEASURES = {
     "disk_margin_sensor": ("1", "disk margin with all sensors perturbed; 0 if unstable"),
     "worst_radius": ("1", "largest spectral radius over the changed robots"),
     "tip_stiffness": ("N/m or N m/rad", "smallest static stiffness of the tip, where stable"),
+    "dynamic_stiffness": ("N/m or N m/rad", "the same at the frequency where a force moves the tip most"),
+    "tip_correction": ("1", "share of a constant tip error, unseen by the joints, that is taken away at rest"),
     "time_constant_s": ("s", "of the slowest motion, where stable"),
 }
 STATUS = {OK: "ok", UNREACHABLE: "out of reach", SINGULAR: "singular arm", INFEASIBLE: "no controller"}
