@@ -31,6 +31,7 @@ def test_cells_are_single_verdicts(paper: fb.Plant) -> None:
                 continue
             reached += 1
             expected = hardware_verdict(controller_for(pose, "none", FAST), brief=True)
+            assert found["status"].values[j, i] == (0 if expected.stable else module.UNSTABLE)
             for name in MEASURES:
                 value = getattr(expected, name)
                 assert found[name].values[j, i] == pytest.approx(np.nan if value is None else value, nan_ok=True)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from flexbase.checks import Array
 from flexbase.report.style import DIVERGING, PALE
 from flexbase.sweep.chart import INFINITE, Layer
-from flexbase.sweep.status import GAINED, INDEFINITE, INFEASIBLE, LOST, SINGULAR, UNREACHABLE
+from flexbase.sweep.status import GAINED, INDEFINITE, INFEASIBLE, LOST, SINGULAR, UNREACHABLE, UNSTABLE
 
 TAIL = 4.0  # percent of the cells at either end that the colours may leave out
 PATTERN = {  # of matplotlib's hatches
@@ -23,6 +23,7 @@ PATTERN = {  # of matplotlib's hatches
     INFEASIBLE: "|||",
     LOST: "\\\\\\",
     GAINED: "+++",
+    UNSTABLE: "---",
     INFINITE: "",
 }
 UNKNOWN = ""  # no hatch: cells that are not computed yet

@@ -26,7 +26,7 @@ from flexbase.sweep.grids import tip_place
 from flexbase.sweep.layout import MEASURED, empty, to_dataset
 from flexbase.sweep.opened import open_dataset
 from flexbase.sweep.recipe import VERSIONED
-from flexbase.sweep.status import INFEASIBLE, OK, SINGULAR, UNREACHABLE, flags
+from flexbase.sweep.status import INFEASIBLE, OK, SINGULAR, UNREACHABLE, UNSTABLE, flags
 from flexbase.sweep.store import FINISHED, Field, identity, open_store
 
 MEASURES = {
@@ -39,7 +39,13 @@ MEASURES = {
     "tip_correction": ("1", "share of a constant tip error, unseen by the joints, that is taken away at rest"),
     "time_constant_s": ("s", "of the slowest motion, where stable"),
 }
-STATUS = {OK: "ok", UNREACHABLE: "out of reach", SINGULAR: "singular arm", INFEASIBLE: "no controller"}
+STATUS = {
+    OK: "ok",
+    UNREACHABLE: "out of reach",
+    SINGULAR: "singular arm",
+    INFEASIBLE: "no controller",
+    UNSTABLE: "unstable",
+}
 BLOCK = 50  # cells: what a process is given, and what an interruption costs at most
 
 
@@ -73,7 +79,8 @@ def hardware_map(
     """Verdicts over the first two task rows, an `xarray.Dataset` like that of a sweep; `MEASURES` says what is in it.
 
     Each cell is its own pose, with a controller made for it: by the method, or task PD with a given compensator's E.
-    The verdict is the brief one: without delay and lag margins.
+    The verdict is the brief one: without delay and lag margins. Unstable cells have that status, and the values of
+    those measures that are defined there.
 
     hold, bounds, branch : as `flexbase.sweep` over tip takes them; store, resume : a Zarr folder, to go on with
     workers : processes, one a core if left out; progress : called with the cells done and all cells
@@ -200,6 +207,8 @@ def _verdicts(task: tuple[Loop, Array]) -> tuple[np.ndarray, Array]:
         except (FlexbaseError, np.linalg.LinAlgError):
             status[i] = INFEASIBLE
             continue
+        if not found.stable:
+            status[i] = UNSTABLE
         row = [getattr(found, name) for name in MEASURES]
         values[i] = [np.nan if value is None else float(f"{value:.9g}") for value in row]  # beyond are roundings
     return status, values

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-OK, UNREACHABLE, SINGULAR, INDEFINITE, INFEASIBLE, LOST, GAINED = range(7)
+OK, UNREACHABLE, SINGULAR, INDEFINITE, INFEASIBLE, LOST, GAINED, UNSTABLE = range(8)
 STATUS = {
     OK: "ok",
     UNREACHABLE: "out of reach",

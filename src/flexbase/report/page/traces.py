@@ -14,10 +14,19 @@ from flexbase.report.map_signs import Scale, face, outlines, zero_paths
 from flexbase.report.style import BLUE, HATCH, INK, PALE
 from flexbase.sweep.axis import Axis
 from flexbase.sweep.chart import INFINITE, Chart, Layer
-from flexbase.sweep.status import GAINED, INDEFINITE, INFEASIBLE, LOST, SINGULAR, UNREACHABLE
+from flexbase.sweep.status import GAINED, INDEFINITE, INFEASIBLE, LOST, SINGULAR, UNREACHABLE, UNSTABLE
 
 Trace = dict[str, Any]
-SHAPES = {UNREACHABLE: "/", SINGULAR: ".", INDEFINITE: "x", INFEASIBLE: "|", LOST: "\\", GAINED: "+", INFINITE: ""}
+SHAPES = {
+    UNREACHABLE: "/",
+    SINGULAR: ".",
+    INDEFINITE: "x",
+    INFEASIBLE: "|",
+    LOST: "\\",
+    GAINED: "+",
+    UNSTABLE: "-",
+    INFINITE: "",
+}
 GAP = 16  # added to the status of a cell that has no value
 CLEAR = [[0.0, "rgba(0,0,0,0)"], [1.0, "rgba(0,0,0,0)"]]
 FONT = {"family": "DejaVu Sans, Verdana, sans-serif", "size": 13, "color": INK}
