@@ -10,7 +10,7 @@ import numpy as np
 
 from flexbase.checks import Array
 from flexbase.dynamics.task import Target, tool_error
-from flexbase.errors import import_extra
+from flexbase.model.formats.quiet_mujoco import quiet_mujoco
 from flexbase.model.sensing import Sensing
 from flexbase.plant import Pose
 from flexbase.simulate.builtin_held import pace_of
@@ -34,16 +34,16 @@ class MujocoHeld:
     """Runs with a goal pose each. Implements `Physics`; MuJoCo steps by its RK4, `timestep` at most 0.2 ms."""
 
     def __init__(self, goals: Sequence[Pose], start: Array, sensing: Sensing) -> None:
-        mujoco = import_extra("mujoco", "mujoco")
         self._arm = goals[0].arm
         self._steps = int(np.ceil(sensing.step / FINEST - 1e-9))
         self._runs = []
         for goal, q in zip(goals, start, strict=True):
             plant = mujoco_plant(goal)
             plant.model.opt.timestep = sensing.step / self._steps
-            plant.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
             plant.data.qpos[:] = q
-            mujoco.mj_forward(plant.model, plant.data)
+            with quiet_mujoco("mujoco") as mujoco:
+                plant.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
+                mujoco.mj_forward(plant.model, plant.data)
             self._runs.append(_One(plant.model, plant.data, np.zeros(self._arm.n), goal.target))
         self._tool = self._runs[0].model.site("tool").id
         self._pace = pace_of(sensing)
@@ -51,7 +51,10 @@ class MujocoHeld:
 
     def observe(self, torque: Array, tip_force: Array) -> Seen:
         """See `Physics`."""
-        mujoco = import_extra("mujoco", "mujoco")
+        with quiet_mujoco("mujoco") as mujoco:
+            return self._observed(mujoco, torque, tip_force)
+
+    def _observed(self, mujoco: Any, torque: Array, tip_force: Array) -> Seen:
         arm, parts = self._arm, []
         for run, u, f in zip(self._runs, torque, tip_force, strict=True):
             data = run.data
@@ -60,7 +63,7 @@ class MujocoHeld:
                 acceleration = (data.qvel[arm.m :] - run.lagged) * self._pace
             else:
                 data.ctrl[:] = u
-                self._push(run, f)
+                self._push(mujoco, run, f)
                 mujoco.mj_forward(run.model, data)
                 acceleration = data.qacc[arm.m :].copy()
             place, turned = data.site_xpos[self._tool], data.site_xmat[self._tool].reshape(3, 3)
@@ -70,7 +73,10 @@ class MujocoHeld:
 
     def advance(self, torque: Array, tip_force: Array, alive: Array) -> None:
         """See `Physics`."""
-        mujoco = import_extra("mujoco", "mujoco")
+        with quiet_mujoco("mujoco") as mujoco:
+            self._advance(mujoco, torque, tip_force, alive)
+
+    def _advance(self, mujoco: Any, torque: Array, tip_force: Array, alive: Array) -> None:
         m = self._arm.m
         for run, u, f, going in zip(self._runs, torque, tip_force, alive, strict=True):
             if not going:
@@ -81,19 +87,18 @@ class MujocoHeld:
                 mujoco.mj_step(run.model, run.data, self._steps)
                 continue
             for _ in range(self._steps):
-                self._push(run, f)
+                self._push(mujoco, run, f)
                 before = run.data.qvel[m:].copy()
                 mujoco.mj_step(run.model, run.data)
                 if self._filter is not None:
                     kept, old, new = self._filter
                     run.lagged = kept * run.lagged + old * before + new * run.data.qvel[m:]
 
-    def _push(self, run: _One, force: Array) -> None:
+    def _push(self, mujoco: Any, run: _One, force: Array) -> None:
         """Joint forces of a force on the tool, by MuJoCo's Jacobian at its present place."""
         run.data.qfrc_applied[:] = 0.0
         if not force.any():
             return
-        mujoco = import_extra("mujoco", "mujoco")
         mujoco.mj_kinematics(run.model, run.data)
         mujoco.mj_comPos(run.model, run.data)
         J = np.zeros((6, run.model.nv))

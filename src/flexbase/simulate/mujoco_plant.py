@@ -9,7 +9,8 @@ import numpy as np
 
 from flexbase.checks import Array
 from flexbase.dynamics.kinematics import Frames
-from flexbase.errors import InputError, import_extra
+from flexbase.errors import InputError
+from flexbase.model.formats.quiet_mujoco import quiet_mujoco
 from flexbase.plant import Pose
 from flexbase.simulate.mjcf import mjcf_of
 
@@ -26,12 +27,12 @@ class MujocoPlant:
 
     def equation(self, q: Array, rates: Array) -> tuple[Array, Array]:
         """M and f of M q'' = f + [0; tau] in one state: f is springs and dampers less bias.  [U03 eq 1, 2]"""
-        mujoco = import_extra("mujoco", "mujoco")
         self.data.qpos[:], self.data.qvel[:] = q, rates
-        mujoco.mj_forward(self.model, self.data)
         M, units = np.zeros((len(q), len(q))), np.eye(len(q))
-        for column, unit in zip(M, units, strict=True):  # mj_fullM's arguments differ between versions of MuJoCo
-            mujoco.mj_mulM(self.model, self.data, column, unit)
+        with quiet_mujoco("mujoco") as mujoco:
+            mujoco.mj_forward(self.model, self.data)
+            for column, unit in zip(M, units, strict=True):  # mj_fullM's arguments differ between versions of MuJoCo
+                mujoco.mj_mulM(self.model, self.data, column, unit)
         return M, self.data.qfrc_passive - self.data.qfrc_bias
 
     def accelerations(self, frames: Frames, q: Array, rates: Array, torque: Array, E: Array | None) -> Array:
@@ -54,10 +55,10 @@ class MujocoPlant:
 
 def mujoco_plant(pose: Pose) -> MujocoPlant:
     """Compile a plant in MuJoCo, its base springs at rest where the pose's are. Raises InputError, MissingExtra."""
-    mujoco = import_extra("mujoco", "mujoco")
     text = mjcf_of(replace(pose.arm, base=replace(pose.arm.base, equilibrium=pose.equilibrium)))
     try:
-        model = mujoco.MjModel.from_xml_string(text)
+        with quiet_mujoco("mujoco") as mujoco:
+            model = mujoco.MjModel.from_xml_string(text)
+            return MujocoPlant(model, mujoco.MjData(model))
     except ValueError as fault:
         raise InputError(f"{pose.plant.name}: MuJoCo refuses the plant: {' '.join(str(fault).split())}") from fault
-    return MujocoPlant(model, mujoco.MjData(model))

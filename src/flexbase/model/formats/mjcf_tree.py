@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from flexbase.checks import Array
-from flexbase.errors import InputError, import_extra
+from flexbase.errors import InputError
 from flexbase.model.formats.chain import (
     AT_ORIGIN,
     NOTHING,
@@ -29,6 +29,7 @@ from flexbase.model.formats.mjcf import LEAST, Mjcf, check_mjcf
 from flexbase.model.formats.mjcf_couplings import check_couplings
 from flexbase.model.formats.mjcf_drives import drive_notes
 from flexbase.model.formats.notes import Notes
+from flexbase.model.formats.quiet_mujoco import quiet_mujoco
 from flexbase.model.mechanism import Body
 
 HINGE = 3  # mjtJoint
@@ -57,17 +58,12 @@ def read_mjcf(root: Element, tool: str | None) -> RobotFile:
 
 
 def _compiled(mjcf: Mjcf) -> Any:
-    mujoco = import_extra("mujoco", "robots")
-    users_handler = mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(lambda message: None)  # without a handler, warnings go to a file in the working folder
     try:
-        with warnings.catch_warnings():
+        with quiet_mujoco("robots") as mujoco, warnings.catch_warnings():
             warnings.simplefilter("ignore")
             return mujoco.MjModel.from_xml_string("\n".join(mjcf.text))
     except ValueError as fault:
         raise InputError(f"MuJoCo refuses the robot: {_reason(mjcf, str(fault))}") from fault
-    finally:
-        mujoco.set_mju_user_warning(users_handler)
 
 
 def _reason(mjcf: Mjcf, message: str) -> str:
