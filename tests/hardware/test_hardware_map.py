@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import flexbase as fb
+from flexbase.cli.path_table import HEADS, path_row
 from flexbase.control.hardware import hardware_verdict
 from flexbase.design.hardware import controller_for
 from flexbase.errors import InputError, Unreachable
@@ -71,3 +72,23 @@ def test_stopped_and_gone_on_with(paper: fb.Plant, tmp_path: Path, monkeypatch: 
         hardware_map(paper, "none", (4, 3), resume=True, **{**options, "sensing": Sensing(rate=2000.0)})
     with pytest.raises(InputError, match="nothing to resume"):
         hardware_map(paper, "none", (4, 3), resume=True, **{**options, "store": None})
+
+
+def test_a_path_s_table_has_a_heading_over_every_figure(paper: fb.Plant) -> None:
+    """Stable, unstable, out of reach: as many cells as headings, and the figures of the single verdict."""
+    rows = hardware_path(paper, [[0.2, 0.4], [0.33, -0.25], [2.0, 2.0]], sensing=FAST, workers=1)
+    assert [row["status"] for row in rows] == ["ok", "unstable", "out of reach"]
+    shown = [path_row(row) for row in rows]
+    assert {len(one) for one in shown} == {len(HEADS)}
+    verdict = hardware_verdict(controller_for(paper.at_tip([0.2, 0.4]), "none", FAST), brief=True)
+    assert shown[0][2:4] == [
+        f"{verdict.spectral_radius:.4f}",
+        f"{verdict.disk_margin_torque:.2f} {verdict.disk_margin_sensor:.2f}",
+    ]
+    assert shown[0][6] == "100"
+    assert shown[1][3:] == ["-", f"{rows[1]['worst_radius']:.4f}", "-", "-", "-"]
+
+
+def test_a_map_says_what_was_judged(paper: fb.Plant) -> None:
+    found = hardware_map(paper, "none", (3, 3), sensing=FAST, workers=1)
+    assert found.attrs["judged"] == "method none at 4000 Hz"

@@ -31,8 +31,9 @@ def tables(found: Any) -> list[RenderableType]:
     meanings = statuses_of(found)
     cells = [(meanings[code], f"{count} cells") for code, count in counts(found).items()]
     zeros = [(f"{name} = 0", zero) for name in measures_of(found) if (zero := found[name].attrs.get("zero_is"))]
-    state = f"{'with' if found.attrs['compensated'] else 'without'} compensator"
-    heading = f"map {found.attrs.get('difference', state)}"
+    given = found.attrs
+    state = given.get("judged") or f"{'with' if given['compensated'] else 'without'} compensator"
+    heading = f"map {given.get('difference', state)}"
     columns = ["measure", "mode", "smallest", "largest", "unit"]
     said = facts([*axes, *cells, *zeros])
     return [title(found.attrs["robot"], heading), "", said, table(columns, rows, words=(0, 4), blank_after=False)]

@@ -9,18 +9,18 @@ from cyclopts import App, Parameter
 
 from flexbase.cli.cells_bar import cells_bar
 from flexbase.cli.chart import check_map_out, tables, write_map
-from flexbase.cli.digits import number as shown
 from flexbase.cli.document import document
 from flexbase.cli.gains import GainOptions
 from flexbase.cli.options import CompensatorFile, Json, option
 from flexbase.cli.out import OutFile, written
+from flexbase.cli.path_table import HEADS, path_row
 from flexbase.cli.pose import Elbow, Robot, compensator_of
 from flexbase.cli.sensing import SensingOptions
 from flexbase.cli.show import put, table, title
 from flexbase.cli.tips import tips_of
 from flexbase.cli.words import Vector, counts, numbers
 from flexbase.plant import load
-from flexbase.study.hardware_map import MEASURES, hardware_map, hardware_path
+from flexbase.study.hardware_map import hardware_map, hardware_path
 from flexbase.sweep import document as plain
 
 app = App(
@@ -58,9 +58,8 @@ def map_verdicts(
     given["compensator"] = compensator_of(plant, compensator)
     if path is not None:
         rows = hardware_path(plant, tips_of(path), method, **given)
-        lines = [[", ".join(shown(x, 4) for x in row["tip"]), *(shown(row[n], 4) for n in MEASURES)] for row in rows]
-        heads = ("tip", "radius", "torque\nmargin", "sensor\nmargin", "worst\nradius", "stiff\n[N/m]", "tau [s]")
-        put(document("hardware-path", {"tips": rows})) if json else put(title(plant.name, method), table(heads, lines))
+        shown = table(HEADS, [path_row(row) for row in rows], words=(0, 1))
+        put(document("hardware-path", {"tips": rows})) if json else put(title(plant.name, method), shown)
         return
     store = out if out and out.suffix.lower() == ".zarr" else None
     with cells_bar(store) as progress:

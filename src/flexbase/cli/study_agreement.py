@@ -28,8 +28,8 @@ Random controllers on random robots: each is nudged in MuJoCo and watched until
 the motion has grown or died out. With --trial move it drives there from
 elsewhere instead, through counts, noise and limits, and is pushed.
 
-Exit status: 0 at least 98 % of the verdicts come true and neither error is above
-2 %, 1 not, 2 wrong input.""",
+Exit status: 0 at least 98 % of the verdicts come true and neither error is
+above 2 %, 1 not, 2 wrong input.""",
 )
 Out = Annotated[OutFile, Parameter(help="write all cases as .json")]
 

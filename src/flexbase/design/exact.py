@@ -138,7 +138,7 @@ def _square(pose: Pose, natural_frequency: float | None, law: LagLaw | None) -> 
 
 
 def _check_lag_allows(frequency: float, slowest: float, highest: float, law: LagLaw | None) -> None:
-    if law is not None and frequency > highest:
+    if law is not None and not slowest < frequency <= highest:
         raise Infeasible(
             f"natural frequency {frequency:g} rad/s is out of reach: {words(law)}, so with w = 0 only frequencies "
             f"above {slowest:.4f} and up to {highest:.4f} rad/s exist here. Ask for one of them, or for a smaller lag."

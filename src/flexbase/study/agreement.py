@@ -213,8 +213,8 @@ def agreement_study(
     methods : names of HARDWARE_METHODS, all if left out; workers : processes, one a core if left out
     The result depends on `poses`, `seed`, `trial` and `methods`, not on `workers`. Raises InputError, MissingExtra.
     """
-    import_extra("mujoco", "mujoco")
     tried = choose("trial", trial, TRIALS)
+    import_extra("mujoco", "mujoco")
     chosen = tuple(HARDWARE_METHODS) if methods is None else tuple(methods)
     for name in chosen:
         choose("method", name, HARDWARE_METHODS)

@@ -105,7 +105,14 @@ def hardware_map(
     everything = list(boxes(whole, block))
     counts = tuple(-(-size // part) for size, part in zip(whole, block, strict=True))
     recipe = _recipe(loop, {axis.name: axis.values.tolist() for axis in axes}, list(held), list(block))
-    said = {"robot": plant.name, "compensated": int(loop.E is not None), "over": "tip", **identity(recipe)}
+    judged = f"{'given E' if loop.E is not None else f'method {method}'} at {loop.sensing.rate:g} Hz"
+    said = {
+        "robot": plant.name,
+        "compensated": int(loop.E is not None),
+        "judged": judged,
+        "over": "tip",
+        **identity(recipe),
+    }
     kept = None
     if store is not None:
         marks = {FINISHED: Field("int8", tuple(f"block_{dim}" for dim in dims), counts, (1,) * len(counts), {})}

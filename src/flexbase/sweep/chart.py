@@ -193,5 +193,6 @@ def _remark(plane: Any) -> str:
     """What the sweep's attributes say, and where axes that do not show stand."""
     still = [name for name in plane.coords if not plane[name].dims and name not in (MODE, "sample")]
     words = [said(name, float(plane[name]), str(plane[name].attrs.get("units", "1"))) for name in still]
-    state = plane.attrs.get("difference") or ("compensated" if plane.attrs["compensated"] else "")
+    given = plane.attrs
+    state = given.get("difference") or given.get("judged") or ("compensated" if given["compensated"] else "")
     return ", ".join([state, *words] if state else words)

@@ -58,6 +58,7 @@ STAGES = (
     Stage(Weight(10.0, 20.0)),
 )
 SIZES = (1.0, 0.6, 0.36, 0.22, 0.13)  # of the task stiffness, for the servos
+HALF = 0.5
 FACTOR = 1.1
 HALVINGS = 3
 
@@ -68,8 +69,9 @@ def robust(
 ) -> SampledController:
     """The stiffest accepted of servos of the joints, the tip around them, and of loop shaping of tip and joints.
 
-    Accepted as in `coprime`: stable here and on all changed robots, both disk margins at least `margin`. Where nothing
-    is accepted the nearest is returned, and `notes["accepted"]` is false.
+    Accepted as in `coprime`: stable here and on all changed robots, both disk margins at least `margin`. What takes
+    away less than half of a tip error is an answer only where nothing else is accepted. Where nothing is accepted the
+    nearest is returned, and `notes["accepted"]` is false.
 
     stages : tried in turn until the tip is stiff enough for one
     Raises Infeasible where no controller exists at all.
@@ -101,12 +103,17 @@ def robust(
             found += stiffest(attempt, margin, halvings=HALVINGS, softest=_reached(found, margin))
         if (stiff := _reached(found, margin)) > 0.0 and stiff >= enough * asked:
             break
-    return best_of(found, margin, pose).controller
+    return best_of(_correcting(found, margin) or found, margin, pose).controller
+
+
+def _correcting(found: Sequence[Trial], margin: float) -> list[Trial]:
+    """Those that seem accepted and take away half of a tip error: less is hardly a loop of the tip."""
+    return [one for one in found if one.seems_accepted(margin) and one.correction >= HALF]
 
 
 def _reached(found: Sequence[Trial], margin: float) -> float:
-    """Stiffness of the tip, of the stiffest that seems accepted; 0 if none does."""
-    return max((one.stiffness for one in found if one.seems_accepted(margin)), default=0.0)
+    """Stiffness of the tip, of the stiffest that seems accepted and corrects it; 0 if none does."""
+    return max((one.stiffness for one in _correcting(found, margin)), default=0.0)
 
 
 def _servos(robots: Robots, gains: Gains, margin: float, weight: Weight, slow: Slow | None) -> list[Trial]:

@@ -10,7 +10,13 @@ import numpy as np
 
 from flexbase.control.hardware import GOOD_MARGIN
 from flexbase.control.sampled_controller import SampledController
-from flexbase.control.sampled_loop import dynamic_stiffness, plant_at_one_rate, plants_in_a_period, sensitivities
+from flexbase.control.sampled_loop import (
+    dynamic_stiffness,
+    plant_at_one_rate,
+    plants_in_a_period,
+    sensitivities,
+    tip_correction,
+)
 from flexbase.control.sampled_plant import Changed, changed_pose, eight_changes
 from flexbase.linear.discrete import Discrete, feedback, spectral_radius
 from flexbase.linear.disk_margin import disk_margin, grid_of, structured_norm
@@ -88,6 +94,11 @@ class Trial:
     def stiffness(self) -> float:
         """Smallest stiffness of the tip at any frequency; 0 if unstable."""
         return dynamic_stiffness(self.robots.pose, self.controller) if self.radius < 1.0 else 0.0
+
+    @cached_property
+    def correction(self) -> float:
+        """Share of a constant tip error that is taken away at rest; 0 if unstable."""
+        return tip_correction(self.robots.pose, self.controller) if self.radius < 1.0 else 0.0
 
     def accepted(self, margin: float = GOOD_MARGIN) -> bool:
         """Stable here and on all changed robots, with both disk margins."""
