@@ -32,7 +32,8 @@ def tables(found: Any) -> list[RenderableType]:
     cells = [(meanings[code], f"{count} cells") for code, count in counts(found).items()]
     zeros = [(f"{name} = 0", zero) for name in measures_of(found) if (zero := found[name].attrs.get("zero_is"))]
     given = found.attrs
-    state = given.get("judged") or f"{'with' if given['compensated'] else 'without'} compensator"
+    judged, with_or_without = given.get("judged"), "with" if given["compensated"] else "without"
+    state = f"of {judged}" if judged else f"{with_or_without} compensator"
     heading = f"map {given.get('difference', state)}"
     columns = ["measure", "mode", "smallest", "largest", "unit"]
     said = facts([*axes, *cells, *zeros])
