@@ -19,6 +19,7 @@ TOLERANCE = 1e-11  # of the arm's reach: rounding in the kinematics is some 1e-1
 ROUNDING = 1e-15  # of the arm's reach: no step makes an error smaller than this
 STATIONARY = 1e-7  # slope of the error over its length, times the Jacobian: a minimum that is not zero
 MOST_DAMPING = 1e3
+LEAST_DAMPING = 16.0 * np.finfo(float).eps  # of the trace of J J^T, for each row: well above what its rounding takes away
 BLOCK = 2048  # rows evaluated together: their intermediate arrays stay in the cache
 
 
@@ -107,8 +108,11 @@ def solve_rows(
 
 
 def _step(J: Array, error: Array, damping: Array) -> Array:
-    transposed = np.swapaxes(J, -1, -2)
-    gram = J @ transposed + damping[:, None, None] * np.eye(J.shape[-2])
+    """-J^T (J J^T + damping)^-1 error; never singular, since even the least damping is above the rounding of J J^T."""
+    transposed, k = np.swapaxes(J, -1, -2), J.shape[-2]
+    gram = J @ transposed
+    least = k * LEAST_DAMPING * np.trace(gram, axis1=-2, axis2=-1) + np.finfo(float).tiny
+    gram += np.maximum(damping, least)[:, None, None] * np.eye(k)
     step = -(transposed @ np.linalg.solve(gram, error[..., None]))[..., 0]
     return np.asarray(step * np.minimum(1.0, LARGEST_STEP / np.maximum(np.abs(step).max(axis=1), 1e-300))[:, None])
 
