@@ -7,7 +7,7 @@ import numpy as np
 from flexbase.dynamics.inertia import mass_matrix
 from flexbase.dynamics.kinematics import forward
 from flexbase.plant import Plant
-from flexbase.sweep.question import Question
+from flexbase.sweeps.engine.question import Question
 from flexbase.trace.algebra import stack
 
 ROUNDING = 1e-12  # times the condition number of M, of the largest value of the batch

@@ -15,8 +15,8 @@ CALL = """
 import sys, time
 sys.path.insert(0, sys.argv[1])
 from models import PANDA1, joints, robustness_of
-import flexbase.sweep
-from flexbase.sweep.evaluate import compiled
+import flexbase.sweeps
+from flexbase.sweeps.engine.evaluate import compiled
 question, cells = robustness_of(PANDA1), joints(PANDA1, 1000)
 begin = time.perf_counter()
 answers = compiled(question).kernel(cells)

@@ -16,7 +16,7 @@ from flexbase.dynamics.inertia import mass_matrix
 from flexbase.dynamics.kinematics import forward, task_jacobian
 from flexbase.measures import Configuration
 from flexbase.measures.robustness import robustness
-from flexbase.sweep.evaluate import Engine, compiled
+from flexbase.sweeps.engine.evaluate import Engine, compiled
 from flexbase.trace.kernel import Kernel, cores, kernel_of
 
 MANY = 1 << 18  # configurations that a kernel gets at once

@@ -11,7 +11,7 @@ import numpy as np
 
 import flexbase as fb
 from flexbase.measures import MEASURES
-from flexbase.sweep.question import Question
+from flexbase.sweeps.engine.question import Question
 
 HERE = Path(__file__).parent
 ROBOTS = Path(fb.__file__).parent / "model" / "library" / "robots"

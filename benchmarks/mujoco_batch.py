@@ -11,8 +11,8 @@ from models import PANDA1, joints, plant
 from timing import Ratio, Side, race
 
 from flexbase.dynamics.kinematics import forward
-from flexbase.simulate.builtin import accelerations
-from flexbase.simulate.mjcf import mjcf_of
+from flexbase.simulation.plants.builtin import accelerations
+from flexbase.simulation.plants.mjcf import mjcf_of
 
 STEP = 1e-6  # s
 CLOSE = 1e-9  # of the largest speed gained: what M's condition number and the step's own rounding leave

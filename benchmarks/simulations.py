@@ -15,10 +15,10 @@ from timing import Ratio, Side, race
 import flexbase as fb
 from flexbase.control.measured import Measured
 from flexbase.dynamics.kinematics import forward
-from flexbase.simulate.builtin import accelerations
-from flexbase.simulate.many_phase import Always, Phase
-from flexbase.simulate.many_step import Step
-from flexbase.simulate.mjcf import mjcf_of
+from flexbase.simulation.many.phase import Always, Phase
+from flexbase.simulation.many.step import Step
+from flexbase.simulation.plants.builtin import accelerations
+from flexbase.simulation.plants.mjcf import mjcf_of
 from flexbase.trace.algebra import Vector
 
 END, STEP = 0.1, 5e-4  # s; both sides take the same steps of the same Runge-Kutta method

@@ -6,7 +6,7 @@ import numpy as np
 
 import flexbase as fb
 from flexbase.report.plot import save_plot
-from flexbase.sweep import save_csv
+from flexbase.sweeps import save_csv
 
 plant = fb.load("ueda2003")
 chart = fb.sweep(plant, measures=["robustness", "compensability"], over="tip", shape=(200, 200))

@@ -3,10 +3,10 @@
 from pathlib import Path
 
 import flexbase as fb
-from flexbase.control.hardware import hardware_verdict
-from flexbase.design.hardware import controller_for
 from flexbase.model.sensing import Sensing
-from flexbase.study.recommend import recommend
+from flexbase.sampled.verdict import hardware_verdict
+from flexbase.study.running.recommend import recommend
+from flexbase.synthesis import controller_for
 
 # The paper's pose: ideal acceleration makes the plant positive real ...
 pose = fb.load("ueda2003").at_tip([0.33, -0.25])

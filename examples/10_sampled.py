@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 import flexbase as fb
-from flexbase.control.sampled_controller import pd_with_gain
-from flexbase.design.hardware import controller_for
 from flexbase.model.sensing import TYPICAL
+from flexbase.sampled.controller import pd_with_gain
+from flexbase.synthesis import controller_for
 
 plant = fb.load("ueda2003")
 start, goal = plant.at_tip([0.33, 0.25]), plant.at_tip([0.33, -0.25])

@@ -10,9 +10,9 @@ import pytest
 
 import flexbase
 from flexbase import FlexbaseWarning, InputError
-from flexbase.design.descent import descend, shortage_and_slope
-from flexbase.design.implementable import BoundedGain
-from flexbase.design.shortage import relative_shortage, working_damping
+from flexbase.compensators.judge.implementable import BoundedGain
+from flexbase.compensators.judge.shortage import relative_shortage, working_damping
+from flexbase.compensators.search.descent import descend, shortage_and_slope
 from flexbase.linear.linearise import Gain
 from systems.oracle import FullSystem
 from systems.passivity import loop_radius, passivity

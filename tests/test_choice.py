@@ -10,10 +10,10 @@ import pytest
 
 import flexbase
 from flexbase import FlexbaseWarning, Infeasible
-from flexbase.design.choice import least_lacking
-from flexbase.design.descent import descend
-from flexbase.design.implementable import BoundedGain
-from flexbase.design.shortage import relative_shortage
+from flexbase.compensators.choice import least_lacking
+from flexbase.compensators.judge.implementable import BoundedGain
+from flexbase.compensators.judge.shortage import relative_shortage
+from flexbase.compensators.search.descent import descend
 from systems.passivity import loop_radius, passivity
 from systems.random_plants import random_pose
 

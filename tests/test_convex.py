@@ -11,7 +11,7 @@ import pytest
 
 import flexbase
 from flexbase import FlexbaseWarning, Infeasible, InputError
-from flexbase.design.mobility_program import MobilityProgram
+from flexbase.compensators.search.mobility_program import MobilityProgram
 from flexbase.errors import MissingExtra
 from systems.oracle import FullSystem
 from systems.passivity import loop_radius, passivity

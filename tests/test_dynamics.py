@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 from flexbase.dynamics.forces import bias_forces, gravity_forces, inverse_dynamics
 from flexbase.dynamics.inertia import mass_matrix
 from flexbase.dynamics.kinematics import forward, jacobian
-from flexbase.simulate.builtin import accelerations
+from flexbase.simulation.plants.builtin import accelerations
 from flexbase.trace.algebra import stack, unstack
 from systems.oracle import RigidBodies, rigid_bodies
 from systems.random_plants import random_mechanism, random_pose

@@ -11,8 +11,8 @@ from scipy.optimize import differential_evolution, minimize
 
 import flexbase
 from flexbase import FlexbaseWarning, Infeasible, InputError
-from flexbase.design.exact import compensability
-from flexbase.design.mode_parameters import symmetric, upper_triangle
+from flexbase.compensators.methods.exact import compensability
+from flexbase.compensators.search.mode_parameters import symmetric, upper_triangle
 from flexbase.linear.aligned_gain import SMALLEST_INERTIA
 from systems.oracle import FullSystem
 from systems.planar import planar, sliding_pair

@@ -20,30 +20,6 @@ def test_no_file_is_longer_than_400_lines():
     assert {path: lines for path, lines in sizes.items() if lines > 400} == {}
 
 
-def test_a_command_file_has_at_most_80_lines():
-    sizes = {path.name: len(path.read_text("utf-8").splitlines()) for path in (SOURCE / "cli").glob("*.py")}
-    commands = {
-        "check",
-        "modes",
-        "verdict",
-        "design",
-        "simulate",
-        "ellipsoid",
-        "map",
-        "montecarlo",
-        "draw",
-        "posture",
-        "rac",
-        "layout",
-        "reproduce",
-        "robots",
-        "init",
-    }
-    found = {name: lines for name, lines in sizes.items() if name.removesuffix(".py").rstrip("_") in commands}
-    assert len(found) >= 8
-    assert {name: lines for name, lines in found.items() if lines > 80} == {}
-
-
 def test_a_missing_package_is_named_with_its_extra():
     with pytest.raises(MissingExtra, match=r'no_such_package is not installed.*"flexbase\[maps\]"'):
         import_extra("no_such_package", "maps")

@@ -11,9 +11,9 @@ import pytest
 
 import flexbase as fb
 from flexbase import FlexbaseWarning, Infeasible, InputError
-from flexbase.design.exact import reachable
-from flexbase.design.exact_redundant import BORDER, lagged_bands
-from flexbase.design.lag_law import LagLaw, lag_limit, obeys
+from flexbase.compensators.judge.lag_law import LagLaw, lag_limit, obeys
+from flexbase.compensators.methods.exact import reachable
+from flexbase.compensators.methods.exact_redundant import BORDER, lagged_bands
 from systems.lagged import dampings, law
 from systems.oracle import FullSystem
 from systems.passivity import loop_radius

@@ -24,9 +24,9 @@ from flexbase.model.base import make_base
 from flexbase.model.mounted import MountedArm
 from flexbase.model.task import Task
 from flexbase.plant import Plant
-from flexbase.simulate.engines import ENGINES
-from flexbase.simulate.mjcf import LEAST, to_mjcf
-from flexbase.simulate.mujoco_plant import mujoco_plant
+from flexbase.simulation.plants.engines import ENGINES
+from flexbase.simulation.plants.mjcf import LEAST, to_mjcf
+from flexbase.simulation.plants.mujoco_plant import mujoco_plant
 from systems.planar import planar, sliding_pair
 from systems.random_plants import random_mechanism, random_pose
 
@@ -372,6 +372,6 @@ def test_without_mujoco_the_extra_is_named(paper, monkeypatch):
 
 
 def test_importing_flexbase_does_not_import_mujoco():
-    program = "import sys, flexbase.simulate.engines; print('mujoco' in sys.modules)"
+    program = "import sys, flexbase.simulation.plants.engines; print('mujoco' in sys.modules)"
     run = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
     assert run.stdout.strip() == "False"

@@ -9,7 +9,7 @@ import pytest
 
 import flexbase
 from flexbase import FlexbaseWarning, Infeasible, InputError
-from flexbase.design.mode_parameters import mode_parameters, parameter_slopes, symmetric, upper_triangle
+from flexbase.compensators.search.mode_parameters import mode_parameters, parameter_slopes, symmetric, upper_triangle
 from systems.oracle import FullSystem
 from systems.planar import planar
 from systems.random_plants import random_pose
@@ -153,7 +153,7 @@ def test_task_priority_meets_the_first_modes_targets(which, derivatives):
 
 def test_later_modes_never_cost_the_first_its_targets():
     """The step for mode 2 lies in the null space of mode 1's slopes: mode 1 moves as if it were alone."""
-    from flexbase.design.recursion import _priority_step
+    from flexbase.compensators.search.recursion import _priority_step
 
     pose = random_pose(2, 2, 3, 3)
     E = np.zeros((3, 3))

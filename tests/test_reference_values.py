@@ -7,7 +7,7 @@ import pytest
 
 import flexbase
 from flexbase import FlexbaseWarning
-from flexbase.design.exact import compensability
+from flexbase.compensators.methods.exact import compensability
 from flexbase.linear.margins import (
     algebraic_loop_radius,
     algebraic_loop_radius_per_joint,

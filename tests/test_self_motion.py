@@ -9,10 +9,10 @@ import pytest
 
 import flexbase
 from flexbase import Plant
-from flexbase.dynamics.inverse_kinematics import arm_angles_of_many
-from flexbase.dynamics.newton import TipProblem, rotation_vector_slope
-from flexbase.dynamics.posture_criteria import by_differences, isotropy
-from flexbase.dynamics.self_motion import best_posture
+from flexbase.dynamics.inverse.arm_angles import arm_angles_of_many
+from flexbase.dynamics.inverse.newton import TipProblem, rotation_vector_slope
+from flexbase.dynamics.inverse.posture_criteria import by_differences, isotropy
+from flexbase.dynamics.inverse.self_motion import best_posture
 from flexbase.model.task import Task
 from systems.planar import planar
 

@@ -16,8 +16,8 @@ from flexbase.control.task_pd import TaskPD
 from flexbase.control.trajectories import LAWS, JointPath
 from flexbase.linear.linearise import Gain
 from flexbase.model.task import make_gains
-from flexbase.simulate.result import SETTLED, Run
-from flexbase.simulate.run import _observe
+from flexbase.simulation.result import SETTLED, Run
+from flexbase.simulation.run import _observe
 from systems.oracle import FullSystem, rigid_bodies
 from systems.planar import planar, sliding_pair
 

@@ -16,8 +16,8 @@ from flexbase.control.trajectories import LAWS, JointPath
 from flexbase.dynamics.rotation_vector import rotation_vector
 from flexbase.model.mechanism import Body, with_payload
 from flexbase.model.task import make_gains
-from flexbase.simulate.many_result import DIVERGED, INDEFINITE, OK
-from flexbase.simulate.run import _observe
+from flexbase.simulation.many.result import DIVERGED, INDEFINITE, OK
+from flexbase.simulation.run import _observe
 from flexbase.trace.algebra import matvec
 from systems.oracle import RigidBodies
 from systems.planar import planar

@@ -9,10 +9,10 @@ import pytest
 
 import flexbase
 from flexbase import InputError, Plant, Unreachable
-from flexbase.dynamics.branches import NAMES
-from flexbase.dynamics.inverse_kinematics import arm_angles_of_many
-from flexbase.dynamics.newton import newton
-from flexbase.dynamics.six_joint_arm import branch_signs, six_joint_arm
+from flexbase.dynamics.inverse.arm_angles import arm_angles_of_many
+from flexbase.dynamics.inverse.branches import NAMES
+from flexbase.dynamics.inverse.newton import newton
+from flexbase.dynamics.inverse.six_joint_arm import branch_signs, six_joint_arm
 from flexbase.model.task import ROWS, Task
 from systems.planar import planar
 from systems.six_axes import ARMS, chain, crooked, six_axes, textbook

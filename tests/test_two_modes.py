@@ -11,11 +11,11 @@ import scipy.linalg
 
 import flexbase
 from flexbase import FlexbaseWarning, Infeasible, InputError
-from flexbase.design.descent import descend
-from flexbase.design.implementable import BoundedGain
-from flexbase.design.mobility_program import MobilityProgram
-from flexbase.design.statement import statement
-from flexbase.design.two_modes import TwoModes, damping_ratio_bound
+from flexbase.compensators.judge.implementable import BoundedGain
+from flexbase.compensators.judge.statement import statement
+from flexbase.compensators.search.descent import descend
+from flexbase.compensators.search.mobility_program import MobilityProgram
+from flexbase.compensators.search.two_modes import TwoModes, damping_ratio_bound
 from systems.oracle import FullSystem
 from systems.passivity import loop_radius, passivity
 from systems.random_plants import random_pose

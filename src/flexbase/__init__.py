@@ -2,8 +2,8 @@
 
 from typing import Any
 
+from flexbase.compensators import METHODS, design
 from flexbase.control.compensator import Certificate, Compensator, load_compensator
-from flexbase.design import METHODS, design
 from flexbase.errors import (
     FlexbaseError,
     FlexbaseWarning,
@@ -15,25 +15,25 @@ from flexbase.errors import (
 )
 from flexbase.linear.linearise import linearise
 from flexbase.linear.modal import Mode, Modes, modes
-from flexbase.linear.passivity import verdict
+from flexbase.linear.passivity.judge import verdict
+from flexbase.linear.passivity.verdict import Verdict
 from flexbase.linear.second_order import SecondOrder
-from flexbase.linear.verdict import Verdict
 from flexbase.measures import MEASURES
 from flexbase.measures.manipulability import Ellipsoid, Manipulability, manipulability
 from flexbase.model.task import Gains
 from flexbase.plant import Plant, Pose, load
-from flexbase.simulate import Run, Runs, simulate, simulate_many
-from flexbase.simulate.mjcf import to_mjcf
-from flexbase.simulate.sampled import simulate_sampled, simulate_sampled_many
-from flexbase.simulate.sampled_result import Push, SampledRun
-from flexbase.study.agreement import Agreement, agreement_study
-from flexbase.study.layout import Layout, best_layout
+from flexbase.simulation import Run, Runs, simulate, simulate_many
+from flexbase.simulation.hardware.result import Push, SampledRun
+from flexbase.simulation.hardware.run import simulate_sampled, simulate_sampled_many
+from flexbase.simulation.plants.mjcf import to_mjcf
+from flexbase.study.agreement.study import Agreement, agreement_study
+from flexbase.study.layout.layout import Layout, best_layout
+from flexbase.study.layout.targets import read_targets
 from flexbase.study.montecarlo import Criterion, Fixed, Lognormal, Normal, Probability, Uniform, montecarlo
-from flexbase.study.posture import Postures, best_posture
-from flexbase.study.robust_curves import RobustCurves, robust_curves
-from flexbase.study.robust_points import RobustPoints, robust_points
-from flexbase.study.targets import read_targets
-from flexbase.sweep import difference, open_dataset, summary, sweep
+from flexbase.study.postures.posture import Postures, best_posture
+from flexbase.study.robust_configurations.curves import RobustCurves, robust_curves
+from flexbase.study.robust_configurations.points import RobustPoints, robust_points
+from flexbase.sweeps import difference, open_dataset, summary, sweep
 
 __version__ = "0.1.0"
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from flexbase.checks import FARTHEST, Array, check_length, check_within, finite_array
 from flexbase.dynamics.inertia import mass_matrix
-from flexbase.dynamics.inverse_kinematics import Solution, arm_angles, arm_solutions
+from flexbase.dynamics.inverse.arm_angles import Solution, arm_angles, arm_solutions
 from flexbase.dynamics.kinematics import Frames, forward, task_jacobian
 from flexbase.dynamics.statics import gravity_stiffness, gravity_torques, static_base
 from flexbase.dynamics.task import Target, target_of, task_error, task_value

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from flexbase.cli.init import template
+from flexbase.cli.commands.init import template
 
 from .conftest import TIP, Call
 

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 import flexbase as fb
-from flexbase.control.hardware import hardware_verdict
-from flexbase.design.hardware import controller_for
 from flexbase.model.sensing import Sensing
-from flexbase.study.as_it_runs import as_it_runs
+from flexbase.sampled.verdict import hardware_verdict
+from flexbase.study.running.as_it_runs import as_it_runs
+from flexbase.synthesis import controller_for
 from systems.planar import PAPER
 
 from .conftest import TIP, Call

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 import flexbase as fb
-from flexbase.control.hardware import hardware_verdict
-from flexbase.design.hardware import controller_for
 from flexbase.model.sensing import Sensing
+from flexbase.sampled.verdict import hardware_verdict
+from flexbase.synthesis import controller_for
 
 from .conftest import TIP, Call
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import flexbase as fb
-from flexbase.sweep import document
+from flexbase.sweeps import document
 
 from .conftest import Call
 

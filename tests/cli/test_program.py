@@ -13,7 +13,7 @@ import pytest
 
 import flexbase
 from flexbase.cli import main as program
-from flexbase.cli import modes as modes_command
+from flexbase.cli.commands import modes as modes_command
 from flexbase.errors import MissingExtra
 
 from .conftest import TIP, Call
@@ -141,9 +141,9 @@ def test_reproduce_shows_the_table(call: Call, monkeypatch: pytest.MonkeyPatch, 
         rows = [("w_1", "-0.07", "-0.0708", "-0.0008", "read off"), ("omega_1", "300", "277", "-23", "read off")]
         return SimpleNamespace(summary_rows=lambda: rows, to_dict=lambda: {"rows": [{"ours": float("nan")}]})
 
-    stub = ModuleType("flexbase.report.paper")
+    stub = ModuleType("flexbase.report.paper.write")
     stub.reproduce = reproduce  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "flexbase.report.paper", stub)
+    monkeypatch.setitem(sys.modules, "flexbase.report.paper.write", stub)
     shown = call("reproduce", "--out", tmp_path / "p")
     assert asked == [tmp_path / "p"]
     assert shown.status == 0

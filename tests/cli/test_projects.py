@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import flexbase as fb
-from flexbase.cli.init import schema_text, template
+from flexbase.cli.commands.init import schema_text, template
 from flexbase.model.files.project import bundled, parse_project
 from flexbase.study.describe import describe
 

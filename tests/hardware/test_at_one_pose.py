@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 import flexbase as fb
-from flexbase.control.hardware import hardware_verdict
-from flexbase.control.sampled_controller import pd_with_gain
-from flexbase.design.hardware import controller_for
 from flexbase.errors import InputError
 from flexbase.model.sensing import Sensing
-from flexbase.report.draw_validity import draw_validity
-from flexbase.study.comparison import compare
-from flexbase.study.safe_gain import safe_gain
-from flexbase.study.validity import SAFE, STABLE, UNSTABLE, region_of, validity
+from flexbase.report.figures.region import draw_validity
+from flexbase.sampled.controller import pd_with_gain
+from flexbase.sampled.verdict import hardware_verdict
+from flexbase.study.running.comparison import compare
+from flexbase.study.running.region import SAFE, STABLE, UNSTABLE, region_of, validity
+from flexbase.study.running.safe_gain import safe_gain
+from flexbase.synthesis import controller_for
 
 FAST = Sensing(rate=4000.0)
 

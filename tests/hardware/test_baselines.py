@@ -7,18 +7,18 @@ import numpy as np
 import pytest
 
 import flexbase as fb
-from flexbase.control.sampled_loop import close_loop, sensitivities
-from flexbase.design.hardware import controller_for
-from flexbase.design.hardware.deflection import base_deflection, search, with_deflection
-from flexbase.design.hardware.lqg import observer, regulator
-from flexbase.design.hardware.notch import DEPTH, notch_filter
-from flexbase.design.hardware.sampled import UNSTABLE
-from flexbase.design.hardware.shaping import design_plant, task_shape
 from flexbase.errors import Infeasible, InputError
-from flexbase.linear.discrete import feedback
-from flexbase.linear.disk_margin import disk_margin
+from flexbase.linear.discrete.disk_margin import disk_margin
+from flexbase.linear.discrete.system import feedback
 from flexbase.linear.margins import arm_on_free_base
 from flexbase.model.sensing import Sensing
+from flexbase.sampled.closed import close_loop, sensitivities
+from flexbase.synthesis import controller_for
+from flexbase.synthesis.methods.deflection import base_deflection, search, with_deflection
+from flexbase.synthesis.methods.lqg import observer, regulator
+from flexbase.synthesis.methods.notch import DEPTH, notch_filter
+from flexbase.synthesis.methods.sampled import UNSTABLE
+from flexbase.synthesis.search.shaping import design_plant, task_shape
 from systems.random_plants import random_pose
 
 
@@ -141,7 +141,7 @@ def test_deflection_refuses_what_the_tip_does_not_show() -> None:
 
 def test_viscous_never_does_worse_than_none(paper_pose: fb.Pose) -> None:
     """At 4 kHz: no damping is among those tried, so the smaller margin does not shrink where neither is accepted."""
-    from flexbase.control.hardware import hardware_verdict
+    from flexbase.sampled.verdict import hardware_verdict
 
     fast = Sensing(rate=4000.0)
     plain, damped = (hardware_verdict(controller_for(paper_pose, name, fast)) for name in ("none", "viscous"))

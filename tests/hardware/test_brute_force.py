@@ -10,9 +10,9 @@ import pytest
 import scipy.linalg
 
 import flexbase as fb
-from flexbase.control.sampled_controller import pd_with_gain
-from flexbase.control.sampled_loop import close_loop
 from flexbase.model.sensing import Sensing
+from flexbase.sampled.closed import close_loop
+from flexbase.sampled.controller import pd_with_gain
 
 CASES = {
     "typical": Sensing(rate=4000.0),

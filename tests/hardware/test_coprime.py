@@ -9,16 +9,16 @@ import pytest
 from scipy.signal import cont2discrete
 
 import flexbase as fb
-from flexbase.control.hardware import hardware_verdict
-from flexbase.control.sampled_loop import close_loop
-from flexbase.design.hardware import controller_for
-from flexbase.design.hardware.coprime import coprime_at
-from flexbase.design.hardware.shaping import design_plant, task_shape
 from flexbase.errors import Infeasible
-from flexbase.linear.coprime import coprime_controller, coprime_margin
-from flexbase.linear.discrete import Discrete, feedback, spectral_radius
-from flexbase.linear.tustin import balanced_truncation, to_continuous, to_discrete
+from flexbase.linear.discrete.coprime import coprime_controller, coprime_margin
+from flexbase.linear.discrete.system import Discrete, feedback, spectral_radius
+from flexbase.linear.discrete.tustin import balanced_truncation, to_continuous, to_discrete
 from flexbase.model.sensing import Sensing
+from flexbase.sampled.closed import close_loop
+from flexbase.sampled.verdict import hardware_verdict
+from flexbase.synthesis import controller_for
+from flexbase.synthesis.methods.coprime import coprime_at
+from flexbase.synthesis.search.shaping import design_plant, task_shape
 
 
 def random_plant(seed: int, states: int = 5, inputs: int = 2, outputs: int = 3) -> Discrete:

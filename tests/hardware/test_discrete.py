@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scipy.signal
 
-from flexbase.linear.discrete import (
+from flexbase.linear.discrete.system import (
     Discrete,
     delay,
     feedback,

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 import flexbase as fb
-from flexbase.cli.path_table import HEADS, path_row
-from flexbase.control.hardware import hardware_verdict
-from flexbase.design.hardware import controller_for
+from flexbase.cli.terminal.path_table import HEADS, path_row
 from flexbase.errors import InputError, Unreachable
 from flexbase.model.sensing import Sensing
-from flexbase.study import hardware_map as module
-from flexbase.study.hardware_map import MEASURES, hardware_map, hardware_path
+from flexbase.sampled.verdict import hardware_verdict
+from flexbase.study.running import hardware_map as module
+from flexbase.study.running.hardware_map import MEASURES, hardware_map, hardware_path
+from flexbase.synthesis import controller_for
 
 FAST = Sensing(rate=4000.0)
 

@@ -14,15 +14,15 @@ import numpy as np
 import pytest
 
 import flexbase as fb
-from flexbase.control.hardware import HardwareVerdict, hardware_verdict
-from flexbase.control.sampled_controller import SampledController
-from flexbase.control.sampled_loop import close_loop
-from flexbase.control.sampled_plant import sampled_plant
-from flexbase.design.hardware import HARDWARE_METHODS, controller_for
 from flexbase.errors import FlexbaseError
-from flexbase.linear.discrete import Discrete, delay, series
+from flexbase.linear.discrete.system import Discrete, delay, series
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
+from flexbase.sampled.closed import close_loop
+from flexbase.sampled.controller import SampledController
+from flexbase.sampled.plant import sampled_plant
+from flexbase.sampled.verdict import HardwareVerdict, hardware_verdict
+from flexbase.synthesis import HARDWARE_METHODS, controller_for
 from systems.planar import PAPER_TIP, planar
 
 SYSTEMS = {

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 import flexbase as fb
-from flexbase.control.sampled_controller import SampledController
-from flexbase.control.sampled_loop import close_loop, sensitivities
-from flexbase.design.hardware import controller_for
-from flexbase.linear.discrete import Discrete, series
-from flexbase.linear.disk_margin import disk_margin
-from flexbase.linear.harmonic import periodic
+from flexbase.linear.discrete.disk_margin import disk_margin
+from flexbase.linear.discrete.harmonic import periodic
+from flexbase.linear.discrete.system import Discrete, series
 from flexbase.model.sensing import Sensing
+from flexbase.sampled.closed import close_loop, sensitivities
+from flexbase.sampled.controller import SampledController
+from flexbase.synthesis import controller_for
 
 STEP = 1e-3
 

@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 
 import flexbase as fb
-from flexbase.control.hardware import hardware_verdict
-from flexbase.control.sampled_controller import SampledController, joint_damping, pd_with_gain
-from flexbase.control.sampled_loop import (
+from flexbase.linear.discrete.disk_margin import disk_margin, structured_norm
+from flexbase.linear.discrete.loop_margins import delay_margin
+from flexbase.linear.discrete.system import Discrete, delay, parallel, series, static
+from flexbase.model.sensing import Sensing
+from flexbase.sampled.closed import (
     close_loop,
     dynamic_stiffness,
     loop_gain,
@@ -18,12 +20,10 @@ from flexbase.control.sampled_loop import (
     tip_correction,
     tip_stiffness,
 )
-from flexbase.control.sampled_plant import Changed, changed_pose, sampled_plant
-from flexbase.design.hardware import controller_for
-from flexbase.linear.discrete import Discrete, delay, parallel, series, static
-from flexbase.linear.disk_margin import disk_margin, structured_norm
-from flexbase.linear.loop_margins import delay_margin
-from flexbase.model.sensing import Sensing
+from flexbase.sampled.controller import SampledController, joint_damping, pd_with_gain
+from flexbase.sampled.plant import Changed, changed_pose, sampled_plant
+from flexbase.sampled.verdict import hardware_verdict
+from flexbase.synthesis import controller_for
 
 FAST = Sensing(rate=4000.0)
 

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 import flexbase as fb
-from flexbase.control.hardware import hardware_verdict
-from flexbase.design.hardware import controller_for
-from flexbase.design.hardware.robust import STAGES
-from flexbase.design.hardware.shaping import slow_gain
-from flexbase.design.hardware.stiffest import stiffest
-from flexbase.design.hardware.trial import Trial, robots_at
 from flexbase.model.sensing import Sensing
+from flexbase.sampled.verdict import hardware_verdict
 from flexbase.study.workspace import random_poses
+from flexbase.synthesis import controller_for
+from flexbase.synthesis.methods.robust import STAGES
+from flexbase.synthesis.search.shaping import slow_gain
+from flexbase.synthesis.search.stiffest import stiffest
+from flexbase.synthesis.search.trial import Trial, robots_at
 
 
 @pytest.mark.parametrize("seed", [3, 4])

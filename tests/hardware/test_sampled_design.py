@@ -9,18 +9,18 @@ import pytest
 from scipy.optimize import minimize
 
 import flexbase as fb
-from flexbase.control.hardware import hardware_verdict
-from flexbase.control.sampled_controller import SampledController
-from flexbase.control.sampled_loop import close_loop, sensitivities
-from flexbase.design.hardware import controller_for
-from flexbase.design.hardware.minimax import Landscape, descend
-from flexbase.design.hardware.sampled import SCALES, SampledProblem, signals
 from flexbase.errors import InputError
-from flexbase.linear.affine_loop import AffineLoop
-from flexbase.linear.discrete import series, static
-from flexbase.linear.disk_margin import disk_margin
+from flexbase.linear.discrete.affine_loop import AffineLoop
+from flexbase.linear.discrete.disk_margin import disk_margin
+from flexbase.linear.discrete.system import series, static
 from flexbase.model.sensing import Sensing
+from flexbase.sampled.closed import close_loop, sensitivities
+from flexbase.sampled.controller import SampledController
+from flexbase.sampled.verdict import hardware_verdict
 from flexbase.study.workspace import random_poses
+from flexbase.synthesis import controller_for
+from flexbase.synthesis.methods.sampled import SCALES, SampledProblem, signals
+from flexbase.synthesis.search.minimax import Landscape, descend
 
 FAST = Sensing(rate=4000.0)
 ALL_BUT_MATRICES = ("E", *SCALES)

@@ -10,17 +10,17 @@ from scipy.integrate import solve_ivp
 
 import flexbase as fb
 from flexbase import Gains, InputError, MissingExtra
-from flexbase.control.sampled_controller import pd_with_gain
-from flexbase.control.sampled_plant import Changed, changed_pose, sampled_plant
-from flexbase.design.hardware import controller_for
 from flexbase.dynamics.kinematics import forward
 from flexbase.errors import import_extra
 from flexbase.model.sensing import Sensing
-from flexbase.simulate import builtin_held
-from flexbase.simulate.builtin import accelerations
-from flexbase.simulate.builtin_held import BuiltinHeld
-from flexbase.simulate.sampled import simulate_sampled, simulate_sampled_many
-from flexbase.simulate.sampled_result import Push, SampledRun
+from flexbase.sampled.controller import pd_with_gain
+from flexbase.sampled.plant import Changed, changed_pose, sampled_plant
+from flexbase.simulation.hardware.result import Push, SampledRun
+from flexbase.simulation.hardware.run import simulate_sampled, simulate_sampled_many
+from flexbase.simulation.plants import builtin_held
+from flexbase.simulation.plants.builtin import accelerations
+from flexbase.simulation.plants.builtin_held import BuiltinHeld
+from flexbase.synthesis import controller_for
 from flexbase.trace.algebra import unstack
 
 TINY = 1e-7  # rad: the second-order terms of the motion are as small against the first

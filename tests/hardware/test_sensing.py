@@ -7,12 +7,12 @@ import pytest
 import scipy.signal
 
 import flexbase as fb
-from flexbase.control.sampled_controller import acceleration_estimator
-from flexbase.design.hardware import controller_for
 from flexbase.errors import InputError
 from flexbase.model.files.project import parse_project
 from flexbase.model.files.sensing_table import samples_between
 from flexbase.model.sensing import TYPICAL, Sensing, checked_sensing
+from flexbase.sampled.controller import acceleration_estimator
+from flexbase.synthesis import controller_for
 from systems.planar import PAPER
 
 FULL = """

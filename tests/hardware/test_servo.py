@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 import flexbase as fb
-from flexbase.control.sampled_controller import SampledController
-from flexbase.control.sampled_loop import close_loop, loop_gain, tip_correction, tip_stiffness
-from flexbase.design.hardware.servo import Slow, floating_inertia, joint_servo
-from flexbase.design.hardware.shaping import Weight
 from flexbase.model.sensing import Sensing
 from flexbase.plant import Plant
+from flexbase.sampled.closed import close_loop, loop_gain, tip_correction, tip_stiffness
+from flexbase.sampled.controller import SampledController
 from flexbase.study.workspace import random_poses
+from flexbase.synthesis.search.servo import Slow, floating_inertia, joint_servo
+from flexbase.synthesis.search.shaping import Weight
 
 PLAIN, SLOW = Weight(), Slow(10.0, 30.0)
 

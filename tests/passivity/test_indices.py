@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import flexbase as fb
-from flexbase.linear.passivity_index import input_index, largest_gain, output_index
-from flexbase.linear.port import compressed, state_port
+from flexbase.linear.passivity.passivity_index import input_index, largest_gain, output_index
+from flexbase.linear.passivity.port import compressed, state_port
 from systems.dense_sweep import grid, least_eigenvalue, lowest
 
 

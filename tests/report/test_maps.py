@@ -9,12 +9,12 @@ from matplotlib.colors import to_hex
 from matplotlib.patches import PathPatch
 
 import flexbase as fb
-from flexbase.report.draw_curves import runs, zero_crossings
-from flexbase.report.map_signs import PATTERN, level_paths, outlines, scale_of
+from flexbase.report.maps.curves import runs, zero_crossings
+from flexbase.report.maps.signs import PATTERN, level_paths, outlines, scale_of
 from flexbase.report.plot import plot
 from flexbase.report.style import BLUE
-from flexbase.sweep.chart import INFINITE, Layer, chart_of
-from flexbase.sweep.status import INFEASIBLE, LOST, UNREACHABLE
+from flexbase.sweeps.answers.chart import INFINITE, Layer, chart_of
+from flexbase.sweeps.engine.status import INFEASIBLE, LOST, UNREACHABLE
 
 
 def blue_lines(ax):

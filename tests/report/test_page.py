@@ -13,8 +13,8 @@ import pytest
 import flexbase as fb
 from flexbase.report.page.write import CELLS, page
 from flexbase.report.plot import save_plot
-from flexbase.sweep.chart import chart_of
-from flexbase.sweep.status import INFEASIBLE, UNREACHABLE
+from flexbase.sweeps.answers.chart import chart_of
+from flexbase.sweeps.engine.status import INFEASIBLE, UNREACHABLE
 
 
 class Reader(HTMLParser):

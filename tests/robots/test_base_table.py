@@ -15,7 +15,7 @@ from files.engines import mujoco_answer
 from flexbase import FlexbaseWarning, InputError
 from flexbase.dynamics.kinematics import forward
 from flexbase.model.files.project import parse_project
-from flexbase.simulate.engines import ENGINES
+from flexbase.simulation.plants.engines import ENGINES
 from systems.oracle import RigidBodies
 
 from .witness import LIBRARY

@@ -18,7 +18,7 @@ from flexbase.dynamics.forces import bias_forces
 from flexbase.dynamics.inertia import mass_matrix
 from flexbase.dynamics.kinematics import forward, jacobian
 from flexbase.model.files.project import bundled
-from flexbase.simulate.mujoco_plant import mujoco_plant
+from flexbase.simulation.plants.mujoco_plant import mujoco_plant
 
 from .witness import LIBRARY, Answer, Witness, tables
 

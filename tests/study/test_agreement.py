@@ -10,12 +10,11 @@ from scipy.optimize import brentq
 
 import flexbase as fb
 from flexbase import InputError
-from flexbase.control.sampled_loop import close_loop
-from flexbase.study import agreement as study
-from flexbase.study import agreement_move
-from flexbase.study.agreement import Agreement, agreement_study
-from flexbase.study.agreement_case import Outcome, _driven, draw_case
-from flexbase.study.agreement_nudge import explain, growth_of, watch
+from flexbase.sampled.closed import close_loop
+from flexbase.study.agreement import move as agreement_move
+from flexbase.study.agreement.case import Outcome, _driven, draw_case
+from flexbase.study.agreement.nudge import explain, growth_of, watch
+from flexbase.study.agreement.study import Agreement, agreement_study, study
 
 pytest.importorskip("mujoco")
 

@@ -7,11 +7,11 @@ import pytest
 from scipy.stats import binomtest
 
 import flexbase as fb
-from flexbase.control.hardware import hardware_verdict
-from flexbase.design.hardware import controller_for
 from flexbase.model.sensing import Sensing
-from flexbase.study.hardware import Setting, hardware_study, share_interval
+from flexbase.sampled.verdict import hardware_verdict
+from flexbase.study.running.hardware_study import Setting, hardware_study, share_interval
 from flexbase.study.workspace import random_poses
+from flexbase.synthesis import controller_for
 
 FAST, SLOW = Setting(4000.0, 1.0), Setting(1000.0, 1.0)
 

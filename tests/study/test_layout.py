@@ -10,18 +10,18 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import flexbase as fb
-from flexbase.dynamics.two_joint_arm import two_joint_angles, two_joint_arm
+from flexbase.dynamics.inverse.two_joint_arm import two_joint_angles, two_joint_arm
 from flexbase.errors import InputError, Unreachable
 from flexbase.measures import MEASURES
 from flexbase.model.task import ROWS, Task
 from flexbase.plant import Plant
-from flexbase.study.layout import best_layout
-from flexbase.study.placement import Placement
-from flexbase.study.posture import best_posture
-from flexbase.study.robust_curves import robust_curves
-from flexbase.study.targets import read_targets
-from flexbase.sweep.evaluate import Engine
-from flexbase.sweep.question import Question
+from flexbase.study.layout.layout import best_layout
+from flexbase.study.layout.placement import Placement
+from flexbase.study.layout.targets import read_targets
+from flexbase.study.postures.posture import best_posture
+from flexbase.study.robust_configurations.curves import robust_curves
+from flexbase.sweeps.engine.evaluate import Engine
+from flexbase.sweeps.engine.question import Question
 
 HOLES = np.array([[0.33, -0.25], [0.33, -0.10], [0.45, -0.10], [0.45, -0.25], [0.39, -0.17]])
 

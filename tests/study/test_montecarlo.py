@@ -15,7 +15,7 @@ from flexbase.linear.linearise import Gain, modified_inertia
 from flexbase.linear.margins import algebraic_loop_radius, closed_loop_abscissa
 from flexbase.model.base import make_base
 from flexbase.study.montecarlo import Criterion, Normal, collect, trial
-from flexbase.sweep.parameters import PARAMETERS
+from flexbase.sweeps.cells.parameters import PARAMETERS
 from systems.changed import changed
 
 SOFT = stats.truncnorm((PARAMETERS["stiffness"].least - 1.0) / 0.15, np.inf, 1.0, 0.15)  # of `normal(1,0.15)`

@@ -11,7 +11,7 @@ from flexbase.study.montecarlo import Fixed, Lognormal, Normal, Uniform
 from flexbase.study.montecarlo.distribution import Distribution, read_distribution, written
 from flexbase.study.montecarlo.draws import draw
 from flexbase.study.montecarlo.interval import expected_share, probability_interval
-from flexbase.sweep.parameters import PARAMETERS
+from flexbase.sweeps.cells.parameters import PARAMETERS
 
 LEAST = PARAMETERS["stiffness"].least
 TRUTH = [

@@ -12,7 +12,7 @@ from flexbase.linear.linearise import Gain
 from flexbase.measures.manipulability import Ellipsoid, Manipulability
 from flexbase.study import paper
 from flexbase.study.paper import ellipses, printed
-from flexbase.sweep.status import INDEFINITE, OK
+from flexbase.sweeps.engine.status import INDEFINITE, OK
 from systems.planar import planar
 
 FIRST = np.array([[0.142473, 0.047450], [0.047450, -0.103979]])  # theory §9: 800 iterations with exact slopes

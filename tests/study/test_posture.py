@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 
 import flexbase as fb
-from flexbase.dynamics.newton import TOLERANCE, TipProblem, solve_rows
+from flexbase.dynamics.inverse.newton import TOLERANCE, TipProblem, solve_rows
 from flexbase.errors import InputError, Unreachable
 from flexbase.linear.reduced import robustness
 from flexbase.measures import MEASURES
 from flexbase.model.task import ROWS, Task
 from flexbase.plant import Plant
-from flexbase.study.objective import make_objective
-from flexbase.study.posture import best_posture
-from flexbase.sweep.evaluate import Engine
-from flexbase.sweep.parameters import configuration_of
-from flexbase.sweep.question import Question
+from flexbase.study.postures.objective import make_objective
+from flexbase.study.postures.posture import best_posture
+from flexbase.sweeps.cells.parameters import configuration_of
+from flexbase.sweeps.engine.evaluate import Engine
+from flexbase.sweeps.engine.question import Question
 from systems.planar import planar
 
 THREE = {1: [0.1, 0.3, 0.25, 0.2], 2: [0.1, 0.15, 0.3, 0.25, 0.2]}  # three arm joints on one or two base joints

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 import flexbase as fb
-from flexbase.control.hardware import HardwareVerdict, hardware_verdict
-from flexbase.control.sampled_controller import SampledController, pd_with_gain
-from flexbase.control.sampled_plant import sampled_plant
-from flexbase.control.torque_noise import sensor_noise, torque_noise
 from flexbase.model.sensing import Sensing
-from flexbase.study.recommend import Candidate, choose_best, recommend
+from flexbase.sampled.controller import SampledController, pd_with_gain
+from flexbase.sampled.noise import sensor_noise, torque_noise
+from flexbase.sampled.plant import sampled_plant
+from flexbase.sampled.verdict import HardwareVerdict, hardware_verdict
+from flexbase.study.running.recommend import Candidate, choose_best, recommend
 
 
 @pytest.fixture(scope="module")

@@ -12,9 +12,9 @@ import pytest
 import flexbase as fb
 from flexbase.errors import InputError
 from flexbase.plant import Plant
-from flexbase.study.continuation import follow, near_polyline
-from flexbase.study.robust_curves import robust_curves
-from flexbase.study.robust_points import robust_points
+from flexbase.study.robust_configurations.continuation import follow, near_polyline
+from flexbase.study.robust_configurations.curves import robust_curves
+from flexbase.study.robust_configurations.points import robust_points
 from systems.planar import planar
 
 TWO_MODES = planar([0.1, 0.15, 0.3, 0.25], m=2, damping=0.0)

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import flexbase as fb
-from flexbase.sweep.store import FINISHED
+from flexbase.sweeps.kept.store import FINISHED
 
 SHAPE = (1024, 4100)  # five blocks
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import flexbase as fb
-from flexbase.sweep.angles import crossing
-from flexbase.sweep.chart import chart_of, thinned
-from flexbase.sweep.status import GAINED, LOST, OK, UNREACHABLE
+from flexbase.sweeps.answers.angles import crossing
+from flexbase.sweeps.answers.chart import chart_of, thinned
+from flexbase.sweeps.engine.status import GAINED, LOST, OK, UNREACHABLE
 
 ASKED = {"measures": ("robustness", "frequency", "exact_gain"), "shape": (41, 41)}
 
@@ -54,7 +54,7 @@ def test_status_says_where_they_disagree(paper, exact, pair):
 
 def test_it_is_a_sweep_again(pair, tmp_path):
     """Its file comes back the same, and it is drawn diverging about zero."""
-    from flexbase.sweep import save_netcdf
+    from flexbase.sweeps import save_netcdf
 
     change = fb.difference(*pair)
     save_netcdf(change, tmp_path / "change.nc")

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import flexbase as fb
-from flexbase.sweep.axis import block_shape, boxes, extent
-from flexbase.sweep.domain import HALTON, RANDOM, Samples
-from flexbase.sweep.grids import joint_place, tip_place
+from flexbase.sweeps.cells.axis import block_shape, boxes, extent
+from flexbase.sweeps.cells.domain import HALTON, RANDOM, Samples
+from flexbase.sweeps.cells.grids import joint_place, tip_place
 
 
 @pytest.mark.parametrize("shape", [(7,), (5, 6), (3, 4, 5), (1, 9)])

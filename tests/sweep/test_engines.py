@@ -14,9 +14,9 @@ from flexbase.measures import MEASURES
 from flexbase.model.base import make_base
 from flexbase.model.files.project import bundled
 from flexbase.model.mechanism import Body, with_payload
-from flexbase.sweep.evaluate import Engine, compiled
-from flexbase.sweep.question import Question
-from flexbase.sweep.status import OK
+from flexbase.sweeps.engine.evaluate import Engine, compiled
+from flexbase.sweeps.engine.question import Question
+from flexbase.sweeps.engine.status import OK
 
 POSES = 60
 ROUNDING = 1e-12  # times the condition number of M: what the issue of rounding in M alone may cost

@@ -9,9 +9,9 @@ import pytest
 
 import flexbase as fb
 from flexbase.model.base import make_base
-from flexbase.sweep.evaluate import Engine, compiled
-from flexbase.sweep.parameters import configuration_of, parameters_of
-from flexbase.sweep.question import Question
+from flexbase.sweeps.cells.parameters import configuration_of, parameters_of
+from flexbase.sweeps.engine.evaluate import Engine, compiled
+from flexbase.sweeps.engine.question import Question
 from flexbase.trace.algebra import stack
 from systems.changed import changed
 

@@ -13,9 +13,9 @@ from flexbase.linear.linearise import Gain
 from flexbase.linear.margins import algebraic_loop_radius
 from flexbase.measures import MEASURES, Configuration
 from flexbase.model.base import make_base
-from flexbase.sweep.evaluate import compiled
-from flexbase.sweep.question import Question
-from flexbase.sweep.status import INFEASIBLE, OK
+from flexbase.sweeps.engine.evaluate import compiled
+from flexbase.sweeps.engine.question import Question
+from flexbase.sweeps.engine.status import INFEASIBLE, OK
 from systems.changed import changed
 
 

@@ -18,8 +18,8 @@ from zarr.storage import _local
 
 import flexbase as fb
 from flexbase.model.base import make_base
-from flexbase.sweep.job import Job
-from flexbase.sweep.store import FINISHED
+from flexbase.sweeps.engine.job import Job
+from flexbase.sweeps.kept.store import FINISHED
 
 SHAPE = (2048, 2600)  # five blocks of 512 or so rows
 ROOT = Path(__file__).parents[2]

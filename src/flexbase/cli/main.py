@@ -9,9 +9,9 @@ from collections.abc import Sequence
 from cyclopts import App, Group, Parameter
 
 from flexbase import __version__
-from flexbase.cli.commands import COMMANDS
-from flexbase.cli.faults import one_line_warnings, report, silence_stdout
-from flexbase.cli.show import Screen
+from flexbase.cli.catalogue import COMMANDS
+from flexbase.cli.terminal.faults import one_line_warnings, report, silence_stdout
+from flexbase.cli.terminal.show import Screen
 
 INTERRUPTED, BROKEN_PIPE = 130, 141  # 128 and the number of the signal, as shells have it
 EPILOGUE = """Examples:
@@ -36,7 +36,7 @@ app = App(
 )
 for _name, _purpose in COMMANDS.items():
     _module = _name.replace("-", "_")
-    app.command(f"flexbase.cli.{_module}:app", name=_name, help=_purpose, sort_key=list(COMMANDS).index(_name))
+    app.command(f"flexbase.cli.commands.{_module}:app", name=_name, help=_purpose, sort_key=list(COMMANDS).index(_name))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

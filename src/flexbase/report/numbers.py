@@ -8,11 +8,11 @@ from typing import NamedTuple
 import numpy as np
 
 from flexbase.measures.manipulability import Manipulability
-from flexbase.report import panels
-from flexbase.report.arm import joint_points
-from flexbase.simulate import Run
+from flexbase.report import paper as panels
+from flexbase.report.arm.planar import joint_points
+from flexbase.simulation import Run
 from flexbase.study.paper import EllipseCell, EllipseField, Example, RobustnessMap, Shaping
-from flexbase.sweep import STATUS
+from flexbase.sweeps import STATUS
 
 
 class Numbers(NamedTuple):

@@ -13,32 +13,32 @@ from matplotlib.figure import Figure
 from flexbase.control.compensator import Compensator
 from flexbase.errors import InputError
 from flexbase.linear.modal import Modes
-from flexbase.linear.verdict import Verdict
+from flexbase.linear.passivity.verdict import Verdict
 from flexbase.measures.manipulability import Manipulability
-from flexbase.report.draw_compensator import draw_compensator
-from flexbase.report.draw_layout import draw_layout
-from flexbase.report.draw_manipulability import draw_manipulability
-from flexbase.report.draw_modes import draw_modes
-from flexbase.report.draw_postures import draw_postures
-from flexbase.report.draw_probability import draw_probability
-from flexbase.report.draw_robust_curves import draw_robust_curves
-from flexbase.report.draw_robust_points import draw_robust_points
-from flexbase.report.draw_run import draw_run
-from flexbase.report.draw_sampled import draw_sampled
-from flexbase.report.draw_sweep import draw_chart, draw_dataset
-from flexbase.report.draw_validity import draw_validity
-from flexbase.report.draw_verdict import draw_verdict
+from flexbase.report.figures.compensator import draw_compensator
+from flexbase.report.figures.layout import draw_layout
+from flexbase.report.figures.manipulability import draw_manipulability
+from flexbase.report.figures.modes import draw_modes
+from flexbase.report.figures.postures import draw_postures
+from flexbase.report.figures.region import draw_validity
+from flexbase.report.figures.robust_curves import draw_robust_curves
+from flexbase.report.figures.robust_points import draw_robust_points
+from flexbase.report.figures.run import draw_run
+from flexbase.report.figures.sampled_run import draw_sampled
+from flexbase.report.figures.verdict import draw_verdict
+from flexbase.report.maps.probability import draw_probability
+from flexbase.report.maps.sweep import draw_chart, draw_dataset
 from flexbase.report.save import check_picture_path, save_figure
 from flexbase.report.style import styled
-from flexbase.simulate import Run
-from flexbase.simulate.sampled_result import SampledRun
-from flexbase.study.layout import Layout
+from flexbase.simulation import Run
+from flexbase.simulation.hardware.result import SampledRun
+from flexbase.study.layout.layout import Layout
 from flexbase.study.montecarlo import Probability, is_study
-from flexbase.study.posture import Postures
-from flexbase.study.robust_curves import RobustCurves
-from flexbase.study.robust_points import RobustPoints
-from flexbase.study.validity import Validity
-from flexbase.sweep.chart import Chart
+from flexbase.study.postures.posture import Postures
+from flexbase.study.robust_configurations.curves import RobustCurves
+from flexbase.study.robust_configurations.points import RobustPoints
+from flexbase.study.running.region import Validity
+from flexbase.sweeps.answers.chart import Chart
 
 PAGE = ".html"
 

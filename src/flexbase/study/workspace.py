@@ -6,7 +6,7 @@ import warnings
 
 import numpy as np
 
-from flexbase.dynamics.two_joint_arm import two_joint_arm
+from flexbase.dynamics.inverse.two_joint_arm import two_joint_arm
 from flexbase.errors import FlexbaseWarning, InputError, SingularArm, Unreachable
 from flexbase.plant import Plant, Pose
 

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from flexbase.report.draw_curves import COLOURS, runs, zero_crossings
-from flexbase.report.draw_samples import BINS, middle, missing_words
-from flexbase.report.map_signs import scale_of
+from flexbase.report.maps.curves import COLOURS, runs, zero_crossings
+from flexbase.report.maps.samples import BINS, middle, missing_words
+from flexbase.report.maps.signs import scale_of
 from flexbase.report.page.planes import Panel
 from flexbase.report.page.traces import (
     area,
@@ -23,7 +23,7 @@ from flexbase.report.page.traces import (
     unit_of,
 )
 from flexbase.report.style import BLUE, GREY, HATCH, SKY
-from flexbase.sweep.chart import Chart, Layer
+from flexbase.sweeps.answers.chart import Chart, Layer
 
 DOTS = 6000  # of a cloud: a browser draws so many without delay
 

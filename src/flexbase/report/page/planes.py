@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from flexbase.report.draw_chart import empty_words
-from flexbase.report.map_signs import Scale, scale_of
+from flexbase.report.maps.chart import empty_words
+from flexbase.report.maps.signs import Scale, scale_of
 from flexbase.report.page.traces import (
     colorscale,
     colour_bar,
@@ -19,7 +19,7 @@ from flexbase.report.page.traces import (
     plane_traces,
     unit_of,
 )
-from flexbase.sweep.chart import Chart, Layer
+from flexbase.sweeps.answers.chart import Chart, Layer
 
 Panel = dict[str, Any]  # data and layout
 STACKED = 120  # cells along an axis of a slice in space

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexbase.checks import Array
-from flexbase.report.map_signs import Scale, face, outlines, zero_paths
+from flexbase.report.maps.signs import Scale, face, outlines, zero_paths
 from flexbase.report.style import BLUE, HATCH, INK, PALE
-from flexbase.sweep.axis import Axis
-from flexbase.sweep.chart import INFINITE, Chart, Layer
-from flexbase.sweep.status import GAINED, INDEFINITE, INFEASIBLE, LOST, SINGULAR, UNREACHABLE, UNSTABLE
+from flexbase.sweeps.answers.chart import INFINITE, Chart, Layer
+from flexbase.sweeps.cells.axis import Axis
+from flexbase.sweeps.engine.status import GAINED, INDEFINITE, INFEASIBLE, LOST, SINGULAR, UNREACHABLE, UNSTABLE
 
 Trace = dict[str, Any]
 SHAPES = {

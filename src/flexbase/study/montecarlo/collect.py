@@ -9,9 +9,9 @@ import numpy as np
 
 from flexbase.study.montecarlo.interval import expected_share, probability_interval
 from flexbase.study.montecarlo.trial import LEAST_BLOCK, TOGETHER, Trial
-from flexbase.sweep.axis import block_shape, boxes
-from flexbase.sweep.executors import by_threads
-from flexbase.sweep.status import INFEASIBLE, OK, STATUS, flags
+from flexbase.sweeps.cells.axis import block_shape, boxes
+from flexbase.sweeps.engine.executors import by_threads
+from flexbase.sweeps.engine.status import INFEASIBLE, OK, STATUS, flags
 
 Progress = Callable[[int, int], None]
 

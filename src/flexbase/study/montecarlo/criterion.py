@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from flexbase.checks import choose
 from flexbase.errors import InputError
 from flexbase.measures import MEASURES
-from flexbase.sweep.evaluate import Block
-from flexbase.sweep.status import INDEFINITE
+from flexbase.sweeps.engine.evaluate import Block
+from flexbase.sweeps.engine.status import INDEFINITE
 
 TOLERANCE = 0.01  # of `robust`: cos(a, b) = 0.98, an angle of 11.5 degrees between a mode's two directions
 

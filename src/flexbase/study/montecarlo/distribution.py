@@ -10,7 +10,7 @@ from scipy.special import ndtr, ndtri
 
 from flexbase.checks import Array, choose
 from flexbase.errors import InputError
-from flexbase.sweep.parameters import Parameter
+from flexbase.sweeps.cells.parameters import Parameter
 
 LARGEST = 1e5  # of a parameter, as in sweeps
 WRITTEN = re.compile(r"\s*(\w+)\s*(?:\((?P<inside>[^()]*)\)|:(?P<after>[^()]*))\s*")

@@ -10,7 +10,7 @@ import numpy as np
 from flexbase.checks import Array, choose
 from flexbase.errors import InputError
 from flexbase.study.montecarlo.distribution import Distribution
-from flexbase.sweep.parameters import Parameter
+from flexbase.sweeps.cells.parameters import Parameter
 
 RANDOM, SOBOL = "random", "sobol"
 MOST = 10_000_000  # draws

@@ -13,8 +13,8 @@ import numpy as np
 from flexbase.checks import Array
 from flexbase.errors import InputError
 from flexbase.study.montecarlo.interval import CONFIDENCE, Estimate, probability_interval
-from flexbase.sweep.status import INFEASIBLE, OK, STATUS
-from flexbase.sweep.summary import save_netcdf
+from flexbase.sweeps.answers.summary import save_netcdf
+from flexbase.sweeps.engine.status import INFEASIBLE, OK, STATUS
 
 LEVELS = (0.5, 0.9, 0.95, 0.99)
 LARGEST = 4_000_000  # lines of a table

@@ -21,12 +21,12 @@ from flexbase.study.montecarlo.draws import RANDOM, draw
 from flexbase.study.montecarlo.interval import CONFIDENCE
 from flexbase.study.montecarlo.result import Probability
 from flexbase.study.montecarlo.trial import Trial
-from flexbase.sweep.caveats import check_measures
-from flexbase.sweep.domain import Grid
-from flexbase.sweep.evaluate import AUTO, COMPILED, ENGINES, ROWS, Engine, compiled
-from flexbase.sweep.grids import Place, joint_place, tip_place
-from flexbase.sweep.parameters import parameters_of
-from flexbase.sweep.question import Question, model_digest
+from flexbase.sweeps.caveats import check_measures
+from flexbase.sweeps.cells.domain import Grid
+from flexbase.sweeps.cells.grids import Place, joint_place, tip_place
+from flexbase.sweeps.cells.parameters import parameters_of
+from flexbase.sweeps.engine.evaluate import AUTO, COMPILED, ENGINES, ROWS, Engine, compiled
+from flexbase.sweeps.engine.question import Question, model_digest
 
 WORTH_COMPILING = 200_000  # evaluations from which a kernel gains more than the half second that it takes to make
 LARGEST = 4_000_000  # cells

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from flexbase.checks import Array
 from flexbase.study.montecarlo.criterion import Criterion
-from flexbase.sweep.axis import Box, extent
-from flexbase.sweep.domain import Grid
-from flexbase.sweep.evaluate import Engine
-from flexbase.sweep.status import INFEASIBLE, OK, SINGULAR, UNREACHABLE
+from flexbase.sweeps.cells.axis import Box, extent
+from flexbase.sweeps.cells.domain import Grid
+from flexbase.sweeps.engine.evaluate import Engine
+from flexbase.sweeps.engine.status import INFEASIBLE, OK, SINGULAR, UNREACHABLE
 
 TOGETHER = 1 << 18  # configurations that a thread evaluates at once
 LEAST_BLOCK = 1024  # cells: inverse kinematics takes many at a time

@@ -8,7 +8,7 @@ from flexbase.checks import Array
 from flexbase.linear.margins import closed_loop_abscissa
 from flexbase.linear.modal import modes
 from flexbase.plant import Plant
-from flexbase.simulate import Run
+from flexbase.simulation import Run
 from flexbase.study.paper import ellipses, printed
 from flexbase.study.paper.ellipses import EllipseCell, EllipseField
 from flexbase.study.paper.example import TARGET_FREQUENCY, Example

@@ -10,8 +10,8 @@ import numpy as np
 from scipy.stats import spearmanr
 
 from flexbase.checks import Array
-from flexbase.design import design
-from flexbase.design.exact import compensability
+from flexbase.compensators import design
+from flexbase.compensators.methods.exact import compensability
 from flexbase.errors import FlexbaseWarning, Infeasible, InputError
 from flexbase.linear.linearise import Gain
 from flexbase.linear.modal import modes

@@ -9,15 +9,15 @@ from numpy.typing import NDArray
 
 from flexbase.checks import Array
 from flexbase.dynamics.inertia import mass_matrix
-from flexbase.dynamics.inverse_kinematics import arm_angles_of_many
+from flexbase.dynamics.inverse.arm_angles import arm_angles_of_many
+from flexbase.dynamics.inverse.two_joint_arm import two_joint_arm
 from flexbase.dynamics.kinematics import forward
-from flexbase.dynamics.two_joint_arm import two_joint_arm
 from flexbase.errors import InputError
 from flexbase.linear.linearise import HasGain
 from flexbase.measures import MEASURES
 from flexbase.plant import Plant
-from flexbase.sweep.evaluate import Engine
-from flexbase.sweep.question import Question
+from flexbase.sweeps.engine.evaluate import Engine
+from flexbase.sweeps.engine.question import Question
 from flexbase.trace.algebra import stack, unstack
 
 RINGS, SPOKES = 126, 361
@@ -31,7 +31,7 @@ class RobustnessMap:
     x, y : tip positions, shape (rings, spokes) [m]; the last spoke closes the circle
     robustness : w_1 [m/(N s^2)], NaN unless the status is OK; turn : angle from b to a [rad]
     smallest_inertia : smallest eigenvalue of M - E; below zero the arm under this E has no meaning
-    status : a key of `flexbase.sweep.STATUS`
+    status : a key of `flexbase.sweeps.STATUS`
     shoulder, inner, outer : centre [m] and radii [m] of the reachable ring
     """
 

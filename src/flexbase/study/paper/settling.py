@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from flexbase.linear.linearise import HasGain
 from flexbase.plant import Plant
-from flexbase.simulate import Run, simulate
+from flexbase.simulation import Run, simulate
 from flexbase.study.paper.example import DESIGN_TIP, START_TIP
 
 

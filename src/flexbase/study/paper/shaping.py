@@ -10,9 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexbase.checks import Array
+from flexbase.compensators import design
+from flexbase.compensators.judge.certificate import certify
 from flexbase.control.compensator import Compensator
-from flexbase.design import design
-from flexbase.design.certificate import certify
 from flexbase.errors import FlexbaseWarning
 from flexbase.plant import Pose
 from flexbase.study.paper import printed

@@ -1,0 +1,70 @@
+"""`flexbase design`: a compensator for one pose."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from cyclopts import App, Parameter
+
+from flexbase.cli.options.common import Json
+from flexbase.cli.options.gains import GainOptions
+from flexbase.cli.options.method import MethodOptions
+from flexbase.cli.options.pose import PoseOptions, Robot
+from flexbase.cli.options.sensing import SensingOptions
+from flexbase.cli.terminal import as_it_runs as hardware
+from flexbase.cli.terminal import units
+from flexbase.cli.terminal.certificate import tables
+from flexbase.cli.terminal.document import document
+from flexbase.cli.terminal.out import PICTURES, OutFile, check_out, written
+from flexbase.cli.terminal.show import put
+from flexbase.compensators import design as design_at
+from flexbase.errors import Infeasible
+from flexbase.plant import load
+from flexbase.study.running.as_it_runs import as_it_runs
+
+app = App(
+    name="design",
+    help_epilogue="""Examples:
+  flexbase design ueda2003 --tip 0.33,-0.25 --natural-frequency 346.8
+  flexbase design ueda2003 --tip 0.33,-0.25 --objective least-radius -o E.json
+  flexbase design ueda2003 --tip 0.33,-0.25 --method recursive --seed 1
+
+The file works with modes, simulate, ellipsoid and map: --compensator E.json
+Exit status: 0 designed, 1 none exists (the reason is said), 2 wrong input.""",
+)
+Out = Annotated[OutFile, Parameter(help="write the compensator as JSON")]
+
+
+@app.default
+def design(
+    robot: Robot,
+    /,
+    *,
+    pose: PoseOptions = PoseOptions(),  # noqa: B008
+    by: MethodOptions = MethodOptions(),  # noqa: B008
+    loop: GainOptions = GainOptions(),  # noqa: B008
+    run: SensingOptions = SensingOptions(),  # noqa: B008
+    out: Out = None,
+    json: Json = False,
+) -> int:
+    """Design E of tau = tau~ + E q'' at a pose: what it does by its certificate, and whether it would run."""
+    is_picture = out is not None and out.suffix.lower() in PICTURES
+    check_out(out, (".json",) if is_picture else ())  # it is JSON whatever its name
+    plant = load(robot)
+    gains, sensing = loop.gains(plant), run.sensing(plant) if run.declared(plant) else None
+    try:
+        at = pose.pose(plant)
+        found = design_at(at, by.method, **by.given(plant), **({} if gains is None else {"gains": gains}))
+    except Infeasible as reason:
+        if not json:
+            raise
+        put(document("design", {"infeasible": str(reason)}))
+        return 1
+    kinds = ["rad" if kind == "revolute" else "m" for kind in plant.arm.mechanism.joint_types[plant.arm.m :]]
+    if out is not None:
+        found.save(out)
+    real = as_it_runs(at, found, sensing, gains)
+    put(document("design", {**found.to_dict(), **hardware.content(real)})) if json else put(
+        *tables(found, units.common("inertia", kinds)), *hardware.lines(real), *written(out)
+    )
+    return 0

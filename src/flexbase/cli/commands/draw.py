@@ -1,0 +1,71 @@
+"""`flexbase draw`: pictures of maps that were written earlier."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+from cyclopts import App, Parameter
+
+from flexbase.cli.options.common import option
+from flexbase.cli.options.words import names, number
+from flexbase.cli.terminal.out import PICTURES, OutFile, check_out, write_out, written
+from flexbase.cli.terminal.show import put, title
+from flexbase.errors import InputError, nearest_name
+from flexbase.study.montecarlo import is_study
+from flexbase.sweeps import difference, open_dataset
+from flexbase.sweeps.answers.chart import chart_of, thinned
+
+app = App(
+    name="draw",
+    help_epilogue="""Examples:
+  flexbase draw big.zarr --out robustness.png
+  flexbase draw map.nc --at payload=2.5 --out map.html
+  flexbase draw with.zarr --before without.zarr --out change.png""",
+)
+Values = tuple[tuple[str, float], ...]
+
+
+def _values(text: str, given: str) -> Values:
+    """Names with a number each. Raises InputError."""
+    pairs = [part.partition("=") for part in names(text, given)]
+    for name, sign, _ in pairs:
+        if not sign:
+            raise InputError(f'{given}: "{name}" has no value. Give NAME=VALUE, such as payload=2.5.')
+    return tuple((name.strip(), number(value, given)) for name, _, value in pairs)
+
+
+@app.default
+def draw(
+    sweep: Annotated[Path, Parameter(help="a .zarr store that map wrote, or a .nc file")],
+    /,
+    *,
+    before: Annotated[
+        Path | None, Parameter(metavar="FILE", help="another map of the same cells: draw what changes from it")
+    ] = None,
+    at: Annotated[Values, option(_values, "NAME=VALUE", "the nearest cells of an axis; with commas")] = (),
+    out: Annotated[OutFile, Parameter(help="write a picture (.png .svg .pdf) or page (.html)")] = None,
+) -> None:
+    """Curves, a map or slices, by the number of axes; large stores are thinned evenly, not read whole."""
+    if out is None:
+        raise InputError("--out is missing. Say where the picture goes, such as --out map.png.")
+    check_out(out, (*PICTURES, ".html"))
+    found = _chosen(open_dataset(sweep), at)
+    if before is not None:
+        found = difference(*(thinned(one) for one in (_chosen(open_dataset(before), at), found)))
+    write_out(out, "draw", found, {})
+    if is_study(found):
+        return put(title(found.attrs["robot"], f"{found.attrs['design']}, probability that it holds"), *written(out))
+    chart = chart_of(found)
+    axes = ", ".join(axis.name for axis in chart.drawn or chart.axes)
+    put(title(chart.heading, f"{', '.join(layer.title for layer in chart.layers)} over {axes}"), *written(out))
+
+
+def _chosen(dataset: Any, at: Values) -> Any:
+    """The cells nearest to the values given. Raises InputError."""
+    for name, value in at:
+        dims = dataset["status"].dims
+        if name not in dims:
+            raise InputError(f'--at: no axis "{name}". {nearest_name(name, dims)}')
+        dataset = dataset.sel({name: value}, method="nearest")
+    return dataset

@@ -1,0 +1,64 @@
+"""`flexbase map`: measures over many configurations."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from cyclopts import App, Parameter
+
+from flexbase.cli.options.common import CompensatorFile, Json, option
+from flexbase.cli.options.execution import ExecutionOptions
+from flexbase.cli.options.plane import PlaneOptions
+from flexbase.cli.options.pose import Robot, compensator_of
+from flexbase.cli.options.words import Names, names
+from flexbase.cli.terminal.chart import check_map_out, tables, write_map
+from flexbase.cli.terminal.document import document
+from flexbase.cli.terminal.out import OutFile, written
+from flexbase.cli.terminal.show import put
+from flexbase.cli.terminal.sweeping import check_difference, compared, swept
+from flexbase.measures import MEASURES
+from flexbase.plant import load
+from flexbase.sweeps import document as numbers
+
+app = App(
+    name="map",
+    help_epilogue=f"""Examples:
+  flexbase map ueda2003 --out robustness.png
+  flexbase map ueda2003 --measures robustness,alignment --over joints
+  flexbase map ueda2003 --shape 10000,10000 --out big.zarr --resume
+  flexbase map ueda2003 --compensator E.json --difference --out change.html
+  flexbase map ur5e-pedestal --hold 0.4 --vary payload=0:5:6 -o map.nc
+
+Measures: {", ".join(MEASURES)}.""",
+)
+Out = Annotated[OutFile, Parameter(help="write a picture (.png .svg .pdf .html), .csv, .json, .nc or .zarr")]
+
+
+@app.default
+def map_cells(
+    robot: Robot,
+    /,
+    *,
+    measures: Annotated[
+        Names, option(names, "NAMES", "with commas; robustness if left out", ("--measures", "--measure"))
+    ] = ("robustness",),
+    plane: PlaneOptions = PlaneOptions(),  # noqa: B008
+    execution: ExecutionOptions = ExecutionOptions(),  # noqa: B008
+    compensator: CompensatorFile = None,
+    difference: Annotated[bool, Parameter(help="what the compensator changes: with it minus without")] = False,
+    out: Out = None,
+    json: Json = False,
+) -> None:
+    """Measures in every cell, the base at its equilibrium; cells out of reach or singular have none."""
+    check_map_out(out, execution.resume)
+    check_difference(difference, compensator, out)
+    plane.check()
+    plant = load(robot)
+    used = compensator_of(plant, compensator)
+    store = out if out and out.suffix.lower() == ".zarr" else None
+    if difference:
+        found = compared(plant, measures, plane, execution, used)
+    else:
+        found = swept(plant, measures, plane, execution, used, store)
+    write_map(out, found)
+    put(document("map", numbers(found))) if json else put(*tables(found), *written(out))

@@ -1,0 +1,79 @@
+"""`flexbase montecarlo`: how sure a design is when the plant is not known exactly."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from cyclopts import App, Parameter
+
+from flexbase.cli.options.assignments import Assignments, assignments
+from flexbase.cli.options.common import CompensatorFile, Json, option
+from flexbase.cli.options.plane import CellOptions
+from flexbase.cli.options.pose import PoseOptions, Robot, compensator_of
+from flexbase.cli.options.words import Names, names, whole
+from flexbase.cli.terminal.document import document
+from flexbase.cli.terminal.out import OutFile, check_out, written
+from flexbase.cli.terminal.probability import KINDS, tables, write_probability
+from flexbase.cli.terminal.progress import progress_bar
+from flexbase.cli.terminal.show import put
+from flexbase.plant import Pose, load
+from flexbase.study.montecarlo import CRITERIA, DISTRIBUTIONS, montecarlo
+
+app = App(
+    name="montecarlo",
+    help_epilogue=f"""Examples:
+  flexbase montecarlo ueda2003 --redesign --vary payload=uniform:0:3 -o map.png
+  flexbase montecarlo ueda2003 --tip 0.33,-0.25 --compensator E.json \\
+    --vary 'stiffness=normal(1,0.15),link_mass=lognormal(1,0.05)'
+
+Distributions: {", ".join(DISTRIBUTIONS)}.
+Criteria: {", ".join(CRITERIA)}; or a measure's bounds: frequency=250:
+Parameters: those of map --vary.""",
+)
+Out = Annotated[OutFile, Parameter(help="write a picture (.png .svg .pdf), .csv, .json or .nc")]
+
+
+@app.default
+def probability(
+    robot: Robot,
+    /,
+    *,
+    pose: PoseOptions = PoseOptions(),  # noqa: B008
+    cells: CellOptions = CellOptions(),  # noqa: B008
+    vary: Annotated[
+        Assignments, option(assignments, "NAME=KIND(A,B)", "what varies, and how; with commas; also NAME=KIND:A:B")
+    ] = (),
+    criterion: Annotated[
+        Names, option(names, "NAMES", "with commas, all must hold; definite,robust", ("--criterion", "--criteria"))
+    ] = ("definite", "robust"),
+    samples: Annotated[int, option(whole, "N", "draws of the parameters; 1000 if left out")] = 1000,
+    seed: Annotated[int, option(whole, "N", "another seed, other draws")] = 0,
+    sampling: Annotated[str, Parameter(metavar="NAME", help="random (if left out) or sobol")] = "random",
+    compensator: CompensatorFile = None,
+    redesign: Annotated[bool, Parameter(help="instead: the exact design for the plant as it is, of each pose")] = False,
+    engine: Annotated[str, Parameter(metavar="NAME", help="compiled, rows, or auto (if left out)")] = "auto",
+    out: Out = None,
+    json: Json = False,
+) -> None:
+    """Probability that a design holds while the plant varies: at a --tip or --joints, else in every cell of a map."""
+    check_out(out, KINDS)
+    plant = load(robot)
+    where = plant if pose.tip is None and pose.joints is None else pose.pose(plant)
+    used = compensator_of(plant, compensator)
+    with progress_bar() as report:
+        found = montecarlo(
+            where,
+            dict(vary),
+            compensator=used,
+            redesign=redesign,
+            criteria=criterion,
+            samples=samples,
+            seed=seed,
+            sampling=sampling,
+            branch=None if isinstance(where, Pose) else pose.elbow,
+            engine=engine,
+            progress=lambda done, total: report("evaluations", done, total),
+            **vars(cells),
+        )
+    write_probability(out, found)
+    put(document("montecarlo", found.to_dict())) if json else put(*tables(found, where), *written(out))

@@ -1,0 +1,1 @@
+"""Words and groups of options that commands share."""

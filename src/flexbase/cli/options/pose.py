@@ -1,0 +1,80 @@
+"""The robot, the pose and the compensator that a command line names."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Group, Parameter
+from rich.console import RenderableType
+
+from flexbase.cli.options.common import blaming, option
+from flexbase.cli.options.elbow import Elbow as Elbow
+from flexbase.cli.options.words import Vector, numbers
+from flexbase.cli.terminal.digits import listed
+from flexbase.cli.terminal.show import facts
+from flexbase.control.compensator import Compensator, load_compensator
+from flexbase.errors import FlexbaseWarning, InputError
+from flexbase.plant import Plant, Pose
+
+Robot = Annotated[str, Parameter(help="bundled name (see: flexbase robots) or path of a project file")]
+POSE = Group("Pose", sort_key=10)
+
+
+@Parameter(name="*", group=POSE)
+@dataclass(frozen=True)
+class PoseOptions:
+    """Where the arm stands."""
+
+    tip: Annotated[Vector | None, option(numbers, "X,Y", "where the tip rests, one number a task row [m, rad]")] = None
+    elbow: Elbow = None
+    joints: Annotated[
+        Vector | None, option(numbers, "Q,Q", "arm joints, or all joints, base first (then its equilibrium) [rad, m]")
+    ] = None
+
+    def pose(self, plant: Plant) -> Pose:
+        """The one pose that the options name. Raises InputError."""
+        found = self.pose_or_none(plant)
+        if found is None:
+            raise InputError("--tip or --joints is missing. Say where the arm stands, such as --tip 0.33,-0.25.")
+        return found
+
+    def pose_or_none(self, plant: Plant) -> Pose | None:
+        """The pose that the options name, or None where they name none. Raises InputError."""
+        if self.tip is not None and self.joints is not None:
+            raise InputError("--tip and --joints are both given. Give one of them.")
+        if self.elbow is not None and self.tip is None:
+            raise InputError(
+                f"--elbow: {self.elbow} chooses among the poses of a --tip, and there is none. Leave it out."
+            )
+        if self.tip is not None:
+            return tip_pose(plant, "--tip", self.tip, self.elbow)
+        return None if self.joints is None else plant.at(self.joints)
+
+
+def tip_pose(plant: Plant, option: str, tip: Vector, elbow: str | None, near: Pose | Compensator | None = None) -> Pose:
+    """The pose at a tip target, of several the nearest to `near`; a fault names the option. Raises InputError."""
+    with blaming(option):
+        return plant.at_tip(tip, elbow, near.q[plant.arm.m :] if near and len(near.q) == plant.arm.N else None)
+
+
+def compensator_of(plant: Plant, path: Path | None) -> Compensator | None:
+    """The compensator in a file, or None. Warns where it was made for another robot. Raises InputError."""
+    if path is None:
+        return None
+    with blaming("--compensator"):
+        found = load_compensator(path)
+    if found.robot != plant.name:
+        warnings.warn(f'{path}: designed for "{found.robot}", used on "{plant.name}".', FlexbaseWarning, stacklevel=2)
+    return found
+
+
+def where(pose: Pose) -> RenderableType:
+    """The pose in two lines."""
+    chain, task = pose.arm.mechanism, pose.arm.task
+    kinds = ["rad" if kind == "revolute" else "m" for kind in chain.joint_types]
+    return facts(
+        [("joints", listed(pose.q, chain.joint_names, kinds)), ("tip", listed(pose.tip, task.rows, task.units))]
+    )

@@ -1,0 +1,1 @@
+"""What a gain does and what it may not do: certificates, laws, refusals."""

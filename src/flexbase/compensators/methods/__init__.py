@@ -1,0 +1,1 @@
+"""Mode shape compensators, one file a method; `design` finds them by name."""

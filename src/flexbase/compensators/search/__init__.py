@@ -1,0 +1,1 @@
+"""How methods look for a gain: recursion, convex programs, descents, closed forms."""

@@ -1,6 +1,0 @@
-"""Design methods, one file each; importing them fills the registry."""
-
-from flexbase.design import bounded, convex, exact, recursive, task_priority
-from flexbase.design.registry import METHODS, Method, design
-
-__all__ = ["METHODS", "Method", "bounded", "convex", "design", "exact", "recursive", "task_priority"]

@@ -1,0 +1,1 @@
+"""Inverse kinematics: closed forms, Newton steps, self-motion, branches by name."""

@@ -1,0 +1,1 @@
+"""Sampled linear systems: margins, coprime factors, Riccati equations."""

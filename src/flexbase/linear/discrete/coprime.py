@@ -1,0 +1,61 @@
+"""Robust stabilisation of normalised coprime factors: the controller that bears the largest error of the plant.
+
+The plant is N M^-1 with coprime factors of unit size; a controller with margin b stabilises every (N + dN)(M + dM)^-1
+whose errors stay below b. McFarlane and Glover (1990); the formulas are those of [theory §10].
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexbase.checks import Array
+from flexbase.linear.discrete import riccati
+from flexbase.linear.discrete.disk_margin import grid_of
+from flexbase.linear.discrete.system import Discrete, feedback
+from flexbase.linear.discrete.tustin import to_continuous, to_discrete
+from flexbase.linear.second_order import StateSpace
+
+
+def coprime_controller(plant: Discrete, factor: float = 1.1) -> tuple[Discrete, float]:
+    """The central controller u = K y at gamma = factor / b_opt, of the plant's order, and b_opt.
+
+    Assumes a stabilisable and detectable plant. The controller's margin b is at least b_opt / factor.
+
+    factor : above 1; the nearer, the faster the controller's own poles
+    Raises numpy.linalg.LinAlgError where a Riccati equation has no stabilising solution.
+    """
+    continuous = to_continuous(plant)
+    A, B, C, D = continuous
+    S, R = np.eye(B.shape[1]) + D.T @ D, np.eye(len(C)) + D @ D.T
+    shifted = A - B @ np.linalg.solve(S, D.T @ C)
+    X = riccati.continuous(shifted, B, C.T @ np.linalg.solve(R, C), S)
+    Z = riccati.continuous(shifted.T, C.T, B @ np.linalg.solve(S, B.T), R)
+    largest = max(float(np.linalg.eigvals(X @ Z).real.max()), 0.0)
+    b_opt = float((1.0 + largest) ** -0.5)
+    gamma = factor / b_opt
+    F = -np.linalg.solve(S, D.T @ C + B.T @ X)
+    W = np.eye(len(A)) + X @ Z - gamma**2 * np.eye(len(A))
+    gain = gamma**2 * np.linalg.solve(W.T, Z @ C.T)
+    controller = StateSpace(np.asarray(A + B @ F + gain @ (C + D @ F)), np.asarray(gain), B.T @ X, -D.T)
+    return to_discrete(controller, plant.step), b_opt
+
+
+def coprime_margin(plant: Discrete, controller: Discrete) -> float:
+    """b = 1 / max over frequency of |[K; I] (I - P K)^-1 [I, P]|, by a sweep of the closed loop; 0 if it is unstable.
+
+    Assumes u = K y. Taken on the grid of `disk_margin`: an upper bound, short of the truth by the grid alone.
+    """
+    loop = feedback(plant, controller)
+    if float(np.abs(np.linalg.eigvals(loop.A)).max(initial=0.0)) >= 1.0:
+        return 0.0
+    frequencies = grid_of(loop)
+    P, K = plant.transfer_function(frequencies), controller.transfer_function(frequencies)
+    return float(1.0 / _four_blocks(P, K).max())
+
+
+def _four_blocks(P: np.ndarray, K: np.ndarray) -> Array:
+    eye = np.eye(P.shape[1])
+    loop = np.linalg.inv(eye - P @ K)
+    left = np.concatenate([K, np.broadcast_to(eye, (len(P), *eye.shape))], axis=1)
+    right = np.concatenate([np.broadcast_to(eye, (len(P), *eye.shape)), P], axis=2)
+    return np.asarray(np.linalg.norm(left @ loop @ right, 2, axis=(1, 2)))

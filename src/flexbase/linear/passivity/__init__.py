@@ -1,0 +1,1 @@
+"""Exact verdicts: positive real, negative imaginary, passivity indices, by the whole response."""

@@ -1,0 +1,1 @@
+"""The arm itself and its mode shapes, in the plane and in space."""

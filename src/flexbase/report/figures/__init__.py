@@ -1,0 +1,1 @@
+"""One file a result: how it is drawn."""

@@ -1,0 +1,1 @@
+"""Pictures of sweeps and probabilities, by their number of axes."""

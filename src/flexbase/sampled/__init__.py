@@ -1,0 +1,1 @@
+"""The loop as it runs: sampled plant and controller, closed, changed, judged."""

@@ -1,0 +1,1 @@
+"""Runs as hardware makes them: held and late torques, counts, noise, limits."""

@@ -1,0 +1,169 @@
+"""The outcome of a sampled run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from flexbase.checks import Array
+from flexbase.plant import Pose
+from flexbase.sampled.controller import SampledController
+from flexbase.simulation.result import SETTLED
+
+GROWS = 1.5  # of the error between two quarters of the time judged: more than noise and counts make of one another
+
+
+@dataclass(frozen=True, eq=False)
+class Push:
+    """A force on the tool from `start` [s], rounded to samples, for `duration` [s].
+
+    force : one for each task row [N or N m]
+    """
+
+    force: tuple[float, ...]
+    start: float
+    duration: float
+
+
+@dataclass(frozen=True, eq=False)
+class SampledRun:
+    """A run of a sampled controller on a nonlinear plant, one entry a sample of the controller.
+
+    t : shape (T,) [s]; q, rates : shape (T, N); tip_error : true, not as measured, against the goal, shape (T, k)
+    torque : as the drives gave it until the next sample, shape (T, n)
+    switch : when the sampled controller takes over from joint tracking [s]; 0: at once
+    spectral_radius : of the linear loop at the goal, a sample; below 1 the verdict is that it settles
+    saturated_samples : in which a drive could not give the torque that it was asked for
+    tolerance : tip error below which it counts as settled [m, and rad for rotation rows]
+    stopped : why the run ended early, or None
+    """
+
+    controller: SampledController
+    goal: Pose
+    t: Array
+    q: Array
+    rates: Array
+    tip_error: Array
+    torque: Array
+    switch: float
+    push: Push | None
+    spectral_radius: float
+    saturated_samples: int
+    engine: str
+    seed: int
+    tolerance: float = SETTLED
+    stopped: str | None = None
+
+    @property
+    def diverged(self) -> bool:
+        """Whether a joint became faster than any robot's."""
+        return self.stopped is not None
+
+    @property
+    def predicted(self) -> bool:
+        """The linear verdict at the goal: stable."""
+        return self.spectral_radius < 1.0
+
+    @property
+    def judged_from(self) -> float:
+        """From when on the loop is left alone [s]: after the switch, and after the push."""
+        return max(self.switch, 0.0 if self.push is None else round(self.push.start + self.push.duration, 9))
+
+    @property
+    def error_size(self) -> Array:
+        """Length of the tip error: positions in m, or rotations in rad where larger, shape (T,)."""
+        rotation = np.array([row.startswith("r") for row in self.goal.arm.task.rows])
+        parts = [np.linalg.norm(self.tip_error[:, part], axis=1) for part in (~rotation, rotation)]
+        return np.asarray(np.maximum(*parts))
+
+    @property
+    def growth(self) -> float | None:
+        """Root mean square error of the last quarter of the time judged, over that of the quarter before it."""
+        late = self.error_size[self.t >= self.judged_from]
+        quarter = len(late) // 4
+        if self.diverged or quarter == 0:
+            return None
+        last, before = (float(np.sqrt(np.mean(part**2))) for part in (late[-quarter:], late[-2 * quarter : -quarter]))
+        return last / before if before > 0.0 else 1.0
+
+    @property
+    def last_error(self) -> float | None:
+        """Largest tip error in the last quarter of the time judged."""
+        late = self.error_size[self.t >= self.judged_from]
+        return None if self.diverged or len(late) < 4 else float(late[-(len(late) // 4) :].max())
+
+    @property
+    def settled(self) -> bool:
+        """Whether the tip stays within the tolerance in the last quarter of the time judged, its error not growing.
+
+        Time is judged after the switch and the push. Growing: half as large again as in the quarter before. A loop that
+        grows more slowly than that is only told by `spectral_radius`.
+        """
+        error, growth = self.last_error, self.growth
+        return error is not None and growth is not None and error < self.tolerance and growth < GROWS
+
+    @property
+    def settling_time_s(self) -> float | None:
+        """Time from `judged_from` after which the tip stays within the tolerance; None if it does not settle."""
+        if not self.settled:
+            return None
+        outside = np.flatnonzero((self.t >= self.judged_from) & (self.error_size >= self.tolerance))
+        return float(self.t[outside[-1] + 1] - self.judged_from) if outside.size else 0.0
+
+    @property
+    def peak_error_m(self) -> float:
+        """Largest tip error after the switch, push included."""
+        late = self.error_size[self.t >= self.switch]
+        return float(late.max(initial=0.0))
+
+    @property
+    def peak_torque(self) -> Array:
+        """Largest torque of each arm joint [N m or N], shape (n,)."""
+        return np.asarray(np.abs(self.torque).max(axis=0))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain numbers, with units in the names."""
+        return {
+            "method": self.controller.name,
+            "engine": self.engine,
+            "rate_hz": self.controller.sensing.rate,
+            "spectral_radius": self.spectral_radius,
+            "predicted_stable": self.predicted,
+            "settled": self.settled,
+            "diverged": self.diverged,
+            "stopped": self.stopped,
+            "settling_time_s": self.settling_time_s,
+            "last_error_m": self.last_error,
+            "growth": self.growth,
+            "tolerance_m": self.tolerance,
+            "peak_error_m": self.peak_error_m,
+            "peak_torque": self.peak_torque.tolist(),
+            "saturated_samples": self.saturated_samples,
+            "switch_s": self.switch,
+            "push": None if self.push is None else [*self.push.force, self.push.start, self.push.duration],
+            "seed": self.seed,
+            "t": self.t.tolist(),
+            "q": self.q.tolist(),
+            "tip_error": self.tip_error.tolist(),
+            "torque": self.torque.tolist(),
+        }
+
+    def summary(self) -> str:
+        """Three lines in plain text."""
+        if self.stopped:
+            verdict = f"diverges: {self.stopped}"
+        elif self.settling_time_s is not None:
+            verdict = f"settles within {1e3 * self.settling_time_s:.1f} ms to {1e3 * self.tolerance:g} mm"
+        else:
+            verdict = f"does not settle to {1e3 * self.tolerance:g} mm in {self.t[-1] - self.judged_from:.3g} s"
+            verdict += "" if self.last_error is None else f" (last error {1e3 * self.last_error:.3g} mm)"
+        said = "stable" if self.predicted else "unstable"
+        return (
+            f"{self.goal.plant.name}, {self.controller.name} at {self.controller.sensing.rate:g} Hz, "
+            f"plant {self.engine}: {verdict}\n"
+            f"  linear verdict {said}, spectral radius {self.spectral_radius:.5f} a sample\n"
+            f"  peak error {1e3 * self.peak_error_m:.3g} mm, peak torque {np.round(self.peak_torque, 2).tolist()}, "
+            f"{self.saturated_samples} samples saturated"
+        )

@@ -1,0 +1,1 @@
+"""Thousands of ideal runs at once, compiled."""

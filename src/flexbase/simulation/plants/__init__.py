@@ -1,0 +1,1 @@
+"""The nonlinear plants: built-in and MuJoCo behind one function."""

@@ -1,0 +1,1 @@
+"""Do linear verdicts come true in MuJoCo?"""

@@ -1,0 +1,129 @@
+"""One case of the agreement study: a controller drawn at a pose, and its linear verdict."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from flexbase.errors import FlexbaseError
+from flexbase.model.sensing import Sensing
+from flexbase.model.task import Gains
+from flexbase.plant import Pose
+from flexbase.sampled.closed import close_loop
+from flexbase.sampled.controller import SampledController
+from flexbase.sampled.plant import Changed, changed_pose, eight_changes
+from flexbase.study.running.hardware_study import judge
+from flexbase.synthesis import HARDWARE_METHODS
+
+RATES = (1e3, 2e3, 4e3)
+SCALES = (1.0 / 16.0, 0.25, 1.0, 4.0)  # of the project's task gains: (s Kp, sqrt(s) Kv)
+ACCELERATIONS = ("accelerometer", "accelerometer", "encoders", "kalman")
+DRIVE = (0.5, 4.0)  # torque given over torque asked, in half of the cases
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A controller on a robot that may differ from its model, and the verdict of the linear loop.
+
+    pose : where and on which robot it runs; change : how that differs, in words
+    drive : torque that the drives give over what the design asks for
+    complete : stable there with good disk margins, and on all robots that are changed from it
+    """
+
+    number: int
+    method: str
+    scale: float
+    change: str
+    drive: float
+    controller: SampledController
+    pose: Pose
+    radius: float
+    complete: bool
+
+    @property
+    def stable(self) -> bool:
+        """The linear verdict."""
+        return self.radius < 1.0
+
+    @property
+    def rate(self) -> float:
+        """Growth of the slowest motion that the linear loop promises [1/s]; negative where it dies out."""
+        return float(np.log(max(self.radius, 1e-300))) * self.controller.sensing.rate
+
+    def to_dict(self) -> dict[str, Any]:
+        """What was drawn, and the verdict."""
+        sensing = self.controller.sensing
+        return {
+            "number": self.number,
+            "method": self.method,
+            "gain_scale": self.scale,
+            "rate_hz": sensing.rate,
+            "task_every": sensing.task_every,
+            "compute_delay": sensing.compute_delay,
+            "task_delay": sensing.task_delay,
+            "acceleration": sensing.acceleration,
+            "encoder_counts": sensing.encoder_counts,
+            "task_noise": sensing.task_noise,
+            "acceleration_noise": sensing.acceleration_noise,
+            "torque_limit": sensing.torque_limit,
+            "change": self.change,
+            "drive": self.drive,
+            "joints": self.pose.q[self.pose.arm.m :].tolist(),
+            "spectral_radius": self.radius,
+            "predicted_stable": self.stable,
+            "complete": self.complete,
+            "predicted_growth_per_s": self.rate,
+        }
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What happened: settled or not, how it was seen, after how long [s].
+
+    growth : as measured at the end [1/s]; NaN where it was not
+    """
+
+    settled: bool
+    seen: str
+    seconds: float
+    growth: float
+
+
+def draw_case(pose: Pose, number: int, attempt: int, seed: int, methods: tuple[str, ...]) -> Case | None:
+    """A controller for a pose, drawn by number, attempt and seed alone; None where its method has no design there."""
+    rng = np.random.default_rng([seed, number, attempt])
+    method, scale = str(rng.choice(methods)), float(rng.choice(SCALES))
+    sensing = Sensing(
+        rate=float(rng.choice(RATES)),
+        task_every=int(rng.choice((1, 1, 2))),
+        compute_delay=int(rng.choice((1, 1, 2))),
+        task_delay=int(rng.choice((0, 1, 2))),
+        acceleration=str(rng.choice(ACCELERATIONS)),
+    )
+    changes = eight_changes(pose.arm.n)
+    change = changes[rng.integers(len(changes))] if rng.random() < 0.5 else Changed("none")
+    drive = float(np.exp(rng.uniform(*np.log(DRIVE)))) if rng.random() < 0.5 else 1.0
+    gains = pose.arm.gains
+    assert gains is not None  # checked by the study
+    scaled = Gains(scale * gains.stiffness, np.sqrt(scale) * gains.damping)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # cautions of designs: the outcome is what counts here
+        try:
+            controller = _driven(HARDWARE_METHODS[method].make(pose, sensing, scaled), drive)
+            real = changed_pose(pose, change)
+        except (FlexbaseError, np.linalg.LinAlgError):
+            return None
+    radius = close_loop(real, controller).radius
+    seen = judge(real, controller)
+    return Case(
+        number, method, scale, change.label, drive, controller, real, radius, bool(seen.margin and seen.perturbed)
+    )
+
+
+def _driven(controller: SampledController, drive: float) -> SampledController:
+    """The controller on drives whose torque is wrong by a factor."""
+    system = controller.system
+    return replace(controller, system=replace(system, C=drive * system.C, D=drive * system.D))

@@ -1,0 +1,189 @@
+"""Where to put the work, or the base: targets moved together until the arm can stand on all of them robustly."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flexbase.checks import Array, positive_number
+from flexbase.dynamics.inverse.newton import reach
+from flexbase.errors import InputError, Unreachable
+from flexbase.linear.linearise import HasGain
+from flexbase.measures import Measure
+from flexbase.model.task import check_branch
+from flexbase.plant import Plant
+from flexbase.study.layout.placement import make_placement
+from flexbase.study.layout.search import best_place
+from flexbase.study.layout.standing import Standing, branches_of, stand
+from flexbase.study.layout.targets import Targets, make_targets
+from flexbase.study.postures.epigraph import GOALS, WORST
+from flexbase.study.postures.objective import SMALL_IS_GOOD, Objective, make_objective
+from flexbase.sweeps.caveats import check_measures
+
+
+@dataclass(frozen=True, eq=False)
+class Station:
+    """One target of a layout.
+
+    tip : its place, shape (k,); value : of the worst mode, None where no posture has one; joints : shape (n,), or None
+    """
+
+    name: str
+    tip: Array
+    value: float | None
+    branch: str | None
+    joints: Array | None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain numbers in SI units; None where the target is not reached."""
+        joints = None if self.joints is None else self.joints.tolist()
+        return {
+            "name": self.name,
+            "tip": self.tip.tolist(),
+            "value": self.value,
+            "branch": self.branch,
+            "joints": joints,
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """A set of targets, and a better place for it. Made by `best_layout`.
+
+    along, shift : the axes, and how far the work moves along each [m]
+    turn : of the work about the vertical through `centre` [rad], before it moves; 0 where it was not asked for
+    before, after : every target in its old and in its new place, each with its best posture
+    goal : "worst" or "mean"; of the values that the measure has
+    """
+
+    plant: Plant
+    measure: Measure
+    goal: str
+    along: tuple[str, ...]
+    shift: Array
+    turn: float
+    centre: tuple[float, float]
+    before: tuple[Station, ...]
+    after: tuple[Station, ...]
+    compensated: bool
+
+    @property
+    def unreachable(self) -> tuple[str, ...]:
+        """Names of the targets that have no posture in the new place."""
+        return tuple(one.name for one in self.after if one.value is None)
+
+    @property
+    def small_is_good(self) -> bool:
+        """Whether the measure is a cost."""
+        return self.measure.name in SMALL_IS_GOOD
+
+    def score(self, stations: Sequence[Station]) -> float | None:
+        """Worst or mean value over those that are reached; None where none is. For costs the worst is the largest."""
+        values = [one.value for one in stations if one.value is not None]
+        if not values:
+            return None
+        least = max if self.small_is_good else min
+        return float(least(values) if self.goal == WORST else np.mean(values))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain numbers in SI units."""
+        return {
+            "robot": self.plant.name,
+            "measure": self.measure.name,
+            "unit": self.measure.unit,
+            "goal": self.goal,
+            "compensated": self.compensated,
+            "shift": dict(zip(self.along, self.shift.tolist(), strict=True)),
+            "turn": self.turn,
+            "centre": list(self.centre),
+            "score_before": self.score(self.before),
+            "score_after": self.score(self.after),
+            "unreachable": list(self.unreachable),
+            "before": [one.to_dict() for one in self.before],
+            "after": [one.to_dict() for one in self.after],
+        }
+
+    def summary(self) -> str:
+        """The move, the score and a line a target."""
+        moves = [f"{row} {value:+.4f} m" for row, value in zip(self.along, self.shift, strict=True)]
+        moves += [f"turn {self.turn:+.4f} rad"] if self.turn else []
+        lines = [f"{self.plant.name}: move the work by {', '.join(moves)}"]
+        lines.append(
+            f"  {self.goal} {self.measure.name}: {_said(self.score(self.before))} -> {_said(self.score(self.after))}"
+        )
+        pairs = zip(self.before, self.after, strict=True)
+        return "\n".join([*lines, *(f"  {a.name}: {_said(a.value)} -> {_said(b.value)}" for a, b in pairs)])
+
+
+def best_layout(
+    plant: Plant,
+    targets: ArrayLike | Targets,
+    measure: str = "alignment",
+    *,
+    goal: str = WORST,
+    along: Sequence[str] | None = None,
+    turn: bool = False,
+    within: float | None = None,
+    branch: str | None = None,
+    compensator: HasGain | None = None,
+) -> Layout:
+    """Where to move a set of tip targets, all together, so that the worst or mean of a measure over them is best.
+
+    Each target counts with its best posture. Places spread over the box of shifts are compared; from the best few,
+    shift and all postures climb together in one nonlinear program with exact derivatives (`epigraph.ascend`). More
+    targets within reach go before better values; those still out of reach are named and left out. Moving the work by a
+    shift is moving the arm with its base by the opposite.
+
+    targets : rows of task values, shape (T, k) [m, rad], or `read_targets(...)`
+    measure : as in `best_posture`; alignment is 1 on the robust arm configurations
+    along : task rows among x y z along which the work may move; all if left out
+    turn : whether it may also turn about the vertical through its middle
+    within : largest shift along each axis [m]; the arm's reach if left out
+    branch : on which all targets are; each on its own best if left out
+    Raises Unreachable where no place brings any target into reach; InputError, MissingExtra (extra `fast`).
+    """
+    objective = make_objective(plant, measure, compensator)
+    check_measures(plant, (objective.measure,), "layout")
+    if goal not in GOALS:
+        raise InputError(f'goal: "{goal}" is unknown. Give "worst" or "mean".')
+    arm = plant.arm
+    given = make_targets(arm.task, targets)
+    largest = reach(arm.mechanism) if within is None else positive_number("within", within, "m")
+    placement = make_placement(arm.task, given.values, along, turn, largest)
+    sides = branches_of(objective, None if branch is None else check_branch(branch))
+    before = stand(objective, given.values, sides)
+    shift, after = best_place(objective, given.values, placement, sides, before, goal)
+    if not np.isfinite(after.values).any():
+        raise Unreachable(f"targets: none is reached by {plant.name} within {largest:g} m. Give a larger --within.")
+    moves = len(placement.along)
+    return Layout(
+        plant,
+        objective.measure,
+        goal,
+        placement.along,
+        shift[:moves],
+        float(shift[moves]) if turn else 0.0,
+        placement.centre,
+        _stations(objective, given.names, given.values, before),
+        _stations(objective, given.names, placement.moved(given.values, shift), after),
+        compensator is not None,
+    )
+
+
+def _stations(objective: Objective, names: tuple[str, ...], tips: Array, found: Standing) -> tuple[Station, ...]:
+    return tuple(
+        Station(name, tip, float(objective.sign * value), branch, joints)
+        if np.isfinite(value)
+        else Station(name, tip, None, None, None)
+        for name, tip, value, branch, joints in zip(
+            names, tips, found.values, found.branches, found.joints, strict=True
+        )
+    )
+
+
+def _said(value: float | None) -> str:
+    return "out of reach" if value is None else f"{value:.6g}"

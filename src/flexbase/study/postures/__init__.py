@@ -1,0 +1,1 @@
+"""The joints in which an arm stands best on a target."""

@@ -1,0 +1,1 @@
+"""The robust arm configurations as curves and points."""

@@ -1,0 +1,1 @@
+"""Which controllers run, where, and which one to use."""

@@ -1,0 +1,72 @@
+"""An ideal compensator as it would run: the verdict that stands beside its certificate."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from flexbase.control.compensator import Compensator
+from flexbase.model.sensing import TYPICAL, Sensing, checked_sensing
+from flexbase.model.task import Gains
+from flexbase.plant import Pose
+from flexbase.sampled.controller import pd_with_gain
+from flexbase.sampled.verdict import GOOD_MARGIN, HardwareVerdict, hardware_verdict
+
+
+@dataclass(frozen=True)
+class AsItRuns:
+    """A compensator with task PD in the loop that a project declares, or in a typical one.
+
+    declared : whether project or caller said how the loop runs
+    """
+
+    verdict: HardwareVerdict
+    sensing: Sensing
+    declared: bool
+
+    @property
+    def good(self) -> bool:
+        """Stable, with both disk margins, on the changed robots too."""
+        return self.verdict.stable and self.verdict.has_margin and self.verdict.survives
+
+    @property
+    def statement(self) -> str:
+        """The verdict in one sentence."""
+        found = self.verdict
+        if not found.stable:
+            return f"unstable as it runs: spectral radius {found.spectral_radius:.4f} a sample"
+        margin = min(found.disk_margin_torque, found.disk_margin_sensor)
+        size = f"disk margin {margin:.2f}" + ("" if found.has_margin else f", below {GOOD_MARGIN:g}")
+        changed = "survives changes of the robot" if found.survives else f"fails with {', '.join(found.failed)}"
+        return f"stable as it runs, {size}; {changed}"
+
+    @property
+    def loop(self) -> str:
+        """The loop in a line, and whether it was assumed."""
+        return self.sensing.summary() + ("" if self.declared else " (assumed: the project has no [sensing])")
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain numbers."""
+        said = {"declared": self.declared, "sensing": asdict(self.sensing), "statement": self.statement}
+        return {**said, **self.verdict.to_dict()}
+
+    def summary(self) -> str:
+        """Two lines."""
+        return f"{self.statement}\n  {self.loop}"
+
+
+def as_it_runs(
+    pose: Pose, compensator: Compensator, sensing: Sensing | None = None, gains: Gains | None = None
+) -> AsItRuns | None:
+    """The verdict on E with task PD at its pose, sampled; None without task gains.
+
+    sensing : if left out, as the project declares it, else 1 kHz with one sample of delay; gains : the project's own
+    Raises InputError.
+    """
+    used = pose.arm.gains if gains is None else gains
+    if used is None:
+        return None
+    declared = sensing or pose.arm.sensing
+    loop = checked_sensing(declared or TYPICAL, pose.arm.n)
+    controller = pd_with_gain(pose, loop, used, compensator.E, compensator.method)
+    return AsItRuns(hardware_verdict(controller), loop, declared is not None)

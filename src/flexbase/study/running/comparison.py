@@ -1,0 +1,73 @@
+"""Controllers for one pose beside each other, each with its verdict."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from flexbase.checks import choose
+from flexbase.errors import FlexbaseWarning, Infeasible, InputError, MissingExtra
+from flexbase.model.sensing import TYPICAL, Sensing
+from flexbase.model.task import Gains
+from flexbase.plant import Pose
+from flexbase.sampled.verdict import HardwareVerdict, hardware_verdict
+from flexbase.synthesis import HARDWARE_METHODS, controller_for
+
+
+@dataclass(frozen=True)
+class Contender:
+    """A method's verdict, or why it has none."""
+
+    method: str
+    verdict: HardwareVerdict | None
+    reason: str = ""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain numbers."""
+        return {"method": self.method, "infeasible": self.reason} if self.verdict is None else self.verdict.to_dict()
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """The verdicts of several methods at a pose."""
+
+    robot: str
+    sensing: Sensing
+    contenders: tuple[Contender, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain numbers."""
+        methods = [one.to_dict() for one in self.contenders]
+        return {"robot": self.robot, "sensing": asdict(self.sensing), "methods": methods}
+
+    def summary(self) -> str:
+        """A few lines a method."""
+        said = [one.verdict.summary() if one.verdict else f"{one.method}: {one.reason}" for one in self.contenders]
+        return "\n".join([f"{self.robot}, {self.sensing.summary()}", *said])
+
+
+def compare(
+    pose: Pose, methods: Sequence[str] | None = None, sensing: Sensing | None = None, gains: Gains | None = None
+) -> Comparison:
+    """Every method's controller at a pose, judged. All registered methods if none are named.
+
+    Raises InputError for an unknown method, and where gains are missing.
+    """
+    names = list(HARDWARE_METHODS if methods is None else methods)
+    for name in names:
+        choose("method", name, HARDWARE_METHODS)
+    if pose.arm.gains is None and gains is None:
+        raise InputError(f"{pose.plant.name}: no task gains. Add a [control] table to the project, or give gains.")
+    used = sensing or pose.arm.sensing or TYPICAL
+    return Comparison(pose.plant.name, used, tuple(_contender(pose, name, used, gains) for name in names))
+
+
+def _contender(pose: Pose, name: str, sensing: Sensing, gains: Gains | None) -> Contender:
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", FlexbaseWarning)  # of ideal designs; the verdict says it better
+            return Contender(name, hardware_verdict(controller_for(pose, name, sensing, gains)))
+    except (Infeasible, InputError, MissingExtra) as reason:
+        return Contender(name, None, str(reason))

@@ -1,0 +1,1 @@
+"""Where a sweep looks: axes, grids, samples, parameters."""

@@ -1,0 +1,1 @@
+"""Inputs to answers: the question, its evaluation, and who runs the blocks."""

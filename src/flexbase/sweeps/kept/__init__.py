@@ -1,0 +1,1 @@
+"""Sweeps on disk: arrays, recipe, store, and reading them back."""

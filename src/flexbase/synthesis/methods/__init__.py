@@ -1,0 +1,1 @@
+"""Controllers for the loop as it runs, one file a method."""

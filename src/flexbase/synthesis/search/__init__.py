@@ -1,0 +1,1 @@
+"""How methods look for a sampled controller: shaping, servos, descents, trials."""
