@@ -13,7 +13,7 @@ from flexbase import FlexbaseWarning, InputError
 from flexbase.compensators.judge.implementable import BoundedGain
 from flexbase.compensators.judge.shortage import relative_shortage, working_damping
 from flexbase.compensators.search.descent import descend, shortage_and_slope
-from flexbase.linear.linearise import Gain
+from flexbase.model.loop import Gain
 from systems.oracle import FullSystem
 from systems.passivity import loop_radius, passivity
 from systems.planar import planar

@@ -16,7 +16,7 @@ import pytest
 
 import flexbase
 from flexbase import FlexbaseWarning, Infeasible, InputError
-from flexbase.linear.linearise import Gain
+from flexbase.model.loop import Gain
 from systems.lagged import law
 from systems.oracle import FullSystem
 from systems.planar import PAPER_TIP, planar, sliding_pair

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 import flexbase
 from flexbase import FlexbaseWarning
-from flexbase.linear.linearise import Gain
 from flexbase.linear.reduced import alignment, robustness
+from flexbase.model.loop import Gain
 from systems.oracle import FullSystem
 from systems.planar import planar, sliding_pair
 from systems.random_plants import DAMPINGS, random_pose

@@ -19,8 +19,8 @@ from flexbase.control.trajectories import LAWS, JointPath
 from flexbase.dynamics.forces import bias_forces
 from flexbase.dynamics.inertia import mass_matrix
 from flexbase.dynamics.kinematics import forward, jacobian
-from flexbase.linear.linearise import Gain
 from flexbase.model.base import make_base
+from flexbase.model.loop import Gain
 from flexbase.model.mounted import MountedArm
 from flexbase.model.task import Task
 from flexbase.plant import Plant

@@ -15,7 +15,8 @@ from flexbase.control.null_space import NullSpaceDamping, Sum, null_space_dampin
 from flexbase.control.task_pd import TaskPD
 from flexbase.errors import FlexbaseError
 from flexbase.linear.closed_loop import abscissa, close_loop
-from flexbase.linear.linearise import Gain, linearise
+from flexbase.linear.linearise import linearise
+from flexbase.model.loop import Gain
 from systems.oracle import FullSystem
 from systems.passivity import least_eigenvalue
 from systems.random_plants import random_pose

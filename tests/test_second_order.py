@@ -8,7 +8,7 @@ import pytest
 import flexbase
 from flexbase import InputError
 from flexbase.linear.closed_loop import abscissa, close_loop
-from flexbase.linear.linearise import Gain
+from flexbase.model.loop import Gain
 from systems.oracle import FullSystem
 from systems.random_plants import random_pose
 

@@ -14,7 +14,7 @@ from flexbase.control.joint_tracking import JointTracking
 from flexbase.control.measured import Measured
 from flexbase.control.task_pd import TaskPD
 from flexbase.control.trajectories import LAWS, JointPath
-from flexbase.linear.linearise import Gain
+from flexbase.model.loop import Gain
 from flexbase.model.task import make_gains
 from flexbase.simulation.result import SETTLED, Run
 from flexbase.simulation.run import _observe

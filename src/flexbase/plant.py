@@ -184,6 +184,18 @@ class Pose:
         return task_error(frames, self.arm.task, self.target)
 
 
+def check_pose(pose: object) -> None:
+    """Raises InputError where something else stands for a pose."""
+    if not isinstance(pose, Pose):
+        raise InputError(f"pose: {type(pose).__name__} given. Make one with plant.at(joints) or plant.at_tip(target).")
+
+
+def check_plant(plant: object) -> None:
+    """Raises InputError where something else stands for a plant."""
+    if not isinstance(plant, Plant):
+        raise InputError(f"plant: {type(plant).__name__} given. Make one with flexbase.load(robot).")
+
+
 def load(robot: str | Path) -> Plant:
     """Load a bundled robot by name, a project file, or a bare URDF or MJCF by path. Raises InputError, MissingExtra."""
     return Plant(load_project(robot, inertia_at))

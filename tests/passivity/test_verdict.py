@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import flexbase as fb
-from flexbase.linear.linearise import Gain
+from flexbase.model.loop import Gain
 from systems.dense_sweep import KINDS, Plant, grid, least_eigenvalue, lowest, random_plant, shortage_and_gain
 from systems.oracle import FullSystem
 from systems.passivity import passivity

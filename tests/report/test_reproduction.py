@@ -15,8 +15,8 @@ from matplotlib import image
 import flexbase as fb
 from flexbase.report import paper as panels
 from flexbase.report.maps import workspace
+from flexbase.report.paper import write as reproduction
 from flexbase.report.paper.write import PANELS, reproduce
-from flexbase.report.paper.write import write as reproduction
 from flexbase.study import paper as study
 
 COARSE = 0.25  # m between ellipses: a third of a minute less than the real spacing

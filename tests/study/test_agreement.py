@@ -12,9 +12,10 @@ import flexbase as fb
 from flexbase import InputError
 from flexbase.sampled.closed import close_loop
 from flexbase.study.agreement import move as agreement_move
+from flexbase.study.agreement import study
 from flexbase.study.agreement.case import Outcome, _driven, draw_case
 from flexbase.study.agreement.nudge import explain, growth_of, watch
-from flexbase.study.agreement.study import Agreement, agreement_study, study
+from flexbase.study.agreement.study import Agreement, agreement_study
 
 pytest.importorskip("mujoco")
 

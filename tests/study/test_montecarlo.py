@@ -11,9 +11,10 @@ from scipy import stats
 from scipy.optimize import brentq
 
 import flexbase as fb
-from flexbase.linear.linearise import Gain, modified_inertia
+from flexbase.linear.linearise import modified_inertia
 from flexbase.linear.margins import algebraic_loop_radius, closed_loop_abscissa
 from flexbase.model.base import make_base
+from flexbase.model.loop import Gain
 from flexbase.study.montecarlo import Criterion, Normal, collect, trial
 from flexbase.sweeps.cells.parameters import PARAMETERS
 from systems.changed import changed

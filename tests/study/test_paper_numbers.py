@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import flexbase as fb
-from flexbase.linear.linearise import Gain
 from flexbase.measures.manipulability import Ellipsoid, Manipulability
+from flexbase.model.loop import Gain
 from flexbase.study import paper
 from flexbase.study.paper import ellipses, printed
 from flexbase.sweeps.engine.status import INDEFINITE, OK

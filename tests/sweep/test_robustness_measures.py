@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import flexbase as fb
-from flexbase.linear.linearise import Gain
 from flexbase.linear.margins import algebraic_loop_radius
 from flexbase.measures import MEASURES, Configuration
 from flexbase.model.base import make_base
+from flexbase.model.loop import Gain
 from flexbase.sweeps.engine.evaluate import compiled
 from flexbase.sweeps.engine.question import Question
 from flexbase.sweeps.engine.status import INFEASIBLE, OK

@@ -9,8 +9,7 @@ from typing import Any, NamedTuple
 from flexbase.checks import choose
 from flexbase.control.compensator import Compensator
 from flexbase.errors import InputError, nearest_name
-from flexbase.linear.linearise import check_pose
-from flexbase.plant import Pose
+from flexbase.plant import Pose, check_pose
 
 
 class Method(NamedTuple):

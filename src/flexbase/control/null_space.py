@@ -19,8 +19,9 @@ import numpy as np
 from flexbase.checks import Array, positive_number
 from flexbase.control.measured import Measured
 from flexbase.errors import Infeasible, InputError
-from flexbase.linear.linearise import HasGain, gain_of
+from flexbase.linear.linearise import gain_of
 from flexbase.linear.second_order import SecondOrder
+from flexbase.model.loop import HasGain
 from flexbase.plant import Pose
 from flexbase.trace.algebra import Vector, matvec, minus, plus, scale, transpose
 

@@ -2,32 +2,18 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
-from flexbase.checks import Array, check_symmetric, finite_array
+from flexbase.checks import Array
 from flexbase.errors import InputError
 from flexbase.linear.reduced import reduce_arm
 from flexbase.linear.second_order import SecondOrder
+from flexbase.model.loop import HasGain, gain_on
 from flexbase.plant import Pose
 
 NEGLIGIBLE = 1e-12  # stiffness of the arm, relative, below which it counts as none
-
-
-class HasGain(Protocol):
-    """Anything with a mode shaping matrix: a `Compensator`."""
-
-    @property
-    def E(self) -> Array:
-        """Constant gain on the joint accelerations, shape (n, n)."""
-        ...
-
-
-class Gain(NamedTuple):
-    """A bare mode shaping matrix."""
-
-    E: Array
 
 
 class ReducedArrays(NamedTuple):
@@ -40,23 +26,9 @@ class ReducedArrays(NamedTuple):
     W: Array
 
 
-def check_pose(pose: object) -> None:
-    """Raises InputError where something else stands for a pose."""
-    if not isinstance(pose, Pose):
-        raise InputError(f"pose: {type(pose).__name__} given. Make one with plant.at(joints) or plant.at_tip(target).")
-
-
 def gain_of(pose: Pose, compensator: HasGain | None) -> Array:
-    """E of a compensator, or zero. Raises InputError where its size does not fit the arm."""
-    n = pose.arm.n
-    if compensator is None:
-        return np.zeros((n, n))
-    if not hasattr(compensator, "E"):
-        raise InputError(f"compensator: {type(compensator).__name__} has no gain E. Give what `design` returned.")
-    E = finite_array("compensator E", compensator.E)
-    if E.shape != (n, n):
-        raise InputError(f"compensator: E has shape {E.shape}, but {pose.plant.name} has {n} arm joints.")
-    return check_symmetric("compensator E", E, "")
+    """E of a compensator, or zero. Raises InputError."""
+    return np.zeros((pose.arm.n, pose.arm.n)) if compensator is None else gain_on(pose.arm, compensator)
 
 
 def has_arm_stiffness(pose: Pose) -> bool:

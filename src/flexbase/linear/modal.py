@@ -11,10 +11,8 @@ import numpy as np
 from flexbase.checks import Array
 from flexbase.errors import FlexbaseWarning
 from flexbase.linear.linearise import (
-    HasGain,
     ReducedArrays,
     check_definite_inertia,
-    check_pose,
     gain_of,
     is_reducible,
     linearise,
@@ -22,7 +20,8 @@ from flexbase.linear.linearise import (
 )
 from flexbase.linear.quadratic_eigenproblem import Pole, RealShapes, damped_poles, real_shapes
 from flexbase.linear.reduced import RealMode, alignment, robustness
-from flexbase.plant import Pose
+from flexbase.model.loop import HasGain
+from flexbase.plant import Pose, check_pose
 
 POSITIVE_REAL = 1e-8  # relative passivity shortage (1 - cos)/2 up to which a residue counts as positive  [theory §5]
 VANISHING = 1e-12  # a mode that the tip sees or drives less than this, relative, is out of its reach

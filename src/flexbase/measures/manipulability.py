@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from flexbase.checks import Array
-from flexbase.linear.linearise import HasGain, check_definite_inertia, gain_of
+from flexbase.linear.linearise import check_definite_inertia, gain_of
 from flexbase.measures.registry import Configuration, measure
+from flexbase.model.loop import HasGain
 from flexbase.plant import Pose
 from flexbase.trace.algebra import Matrix, Scalar, Vector, absolute, atan2, dot, ldl, norm, scale, select
 from flexbase.trace.eigen import symmetric_eigen

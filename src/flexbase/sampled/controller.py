@@ -11,7 +11,7 @@ from flexbase.checks import Array
 from flexbase.control.null_space import null_space_damping
 from flexbase.errors import Infeasible
 from flexbase.linear.discrete.system import Discrete, parallel, series, static
-from flexbase.linear.linearise import Gain
+from flexbase.model.loop import Gain
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose

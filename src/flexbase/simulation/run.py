@@ -18,8 +18,9 @@ from flexbase.control.trajectories import LAWS, JointPath
 from flexbase.dynamics.kinematics import Frames, forward, task_jacobian
 from flexbase.dynamics.task import task_error
 from flexbase.errors import FlexbaseWarning, Infeasible, InputError
-from flexbase.linear.linearise import HasGain, check_definite_inertia, gain_of
+from flexbase.linear.linearise import check_definite_inertia, gain_of
 from flexbase.linear.margins import closed_loop_abscissa
+from flexbase.model.loop import HasGain
 from flexbase.model.task import Gains, checked_gains
 from flexbase.plant import Plant, Pose
 from flexbase.simulation.plants.builtin import keeps_inertia

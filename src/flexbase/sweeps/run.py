@@ -11,8 +11,8 @@ import numpy as np
 
 from flexbase.checks import choose
 from flexbase.errors import FlexbaseWarning, InputError, MissingExtra
-from flexbase.linear.linearise import HasGain
 from flexbase.measures import MEASURES, Measure
+from flexbase.model.loop import HasGain
 from flexbase.plant import Plant
 from flexbase.sweeps.caveats import check_measures
 from flexbase.sweeps.cells.axis import block_shape, boxes

@@ -11,7 +11,7 @@ from flexbase.compensators.judge.lag_law import lag_limit
 from flexbase.compensators.judge.statement import statement
 from flexbase.control.compensator import Certificate, Compensator
 from flexbase.errors import FlexbaseWarning
-from flexbase.linear.linearise import Gain, is_reducible, modified_inertia
+from flexbase.linear.linearise import is_reducible, modified_inertia
 from flexbase.linear.margins import (
     algebraic_loop_radius,
     algebraic_loop_radius_per_joint,
@@ -19,6 +19,7 @@ from flexbase.linear.margins import (
     lag_margin,
 )
 from flexbase.linear.modal import modes
+from flexbase.model.loop import Gain
 from flexbase.model.task import Gains, checked_gains
 from flexbase.plant import Pose
 

@@ -8,11 +8,12 @@ import numpy as np
 import scipy.linalg
 
 from flexbase.checks import Array
-from flexbase.linear.linearise import Gain, reduced_arrays
+from flexbase.linear.linearise import reduced_arrays
 from flexbase.linear.passivity.passivity_index import input_index, largest_gain
 from flexbase.linear.passivity.port import compressed
 from flexbase.linear.passivity.vibration import base_vibration
 from flexbase.linear.reduced import robustness
+from flexbase.model.loop import Gain
 from flexbase.plant import Pose
 
 LOST = 1e-10  # of a and b, the size of the smaller one below which it is rounding

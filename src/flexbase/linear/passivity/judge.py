@@ -6,7 +6,7 @@ import numpy as np
 
 from flexbase.checks import Array, check_definite, check_symmetric, positive_number
 from flexbase.errors import InputError
-from flexbase.linear.linearise import HasGain, check_pose, is_reducible
+from flexbase.linear.linearise import is_reducible
 from flexbase.linear.passivity.level_search import Interval, intervals_below
 from flexbase.linear.passivity.negative_imaginary import negative_imaginary
 from flexbase.linear.passivity.passivity_index import input_index, largest_gain, output_index, skewness
@@ -21,7 +21,8 @@ from flexbase.linear.passivity.vibration import (
     vibration_of_system,
 )
 from flexbase.linear.second_order import SecondOrder
-from flexbase.plant import Pose
+from flexbase.model.loop import HasGain
+from flexbase.plant import Pose, check_pose
 
 HIDDEN = 1e-6  # of the response near one resonance alone: a shortage that deserves a word
 

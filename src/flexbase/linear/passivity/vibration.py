@@ -13,16 +13,10 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from flexbase.checks import Array
-from flexbase.linear.linearise import (
-    HasGain,
-    check_definite_inertia,
-    gain_of,
-    is_reducible,
-    linearise,
-    reduced_arrays,
-)
+from flexbase.linear.linearise import check_definite_inertia, gain_of, is_reducible, linearise, reduced_arrays
 from flexbase.linear.passivity.port import Port
 from flexbase.linear.second_order import SecondOrder
+from flexbase.model.loop import HasGain
 from flexbase.plant import Pose
 
 STILL = 1e-12  # of the largest omega^2: a softer motion has no spring

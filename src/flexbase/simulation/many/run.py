@@ -17,7 +17,8 @@ from flexbase.dynamics.task import task_error
 from flexbase.dynamics.variation import Parameter, parameters_of
 from flexbase.errors import FlexbaseWarning, InputError
 from flexbase.linear.closed_loop import close_loop
-from flexbase.linear.linearise import HasGain, check_definite_inertia, gain_of, linearise
+from flexbase.linear.linearise import check_definite_inertia, gain_of, linearise
+from flexbase.model.loop import HasGain
 from flexbase.model.task import Gains, checked_gains
 from flexbase.plant import Plant, Pose
 from flexbase.simulation.many.phase import Always, Phase, Tracking

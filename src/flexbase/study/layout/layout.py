@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 from flexbase.checks import Array, positive_number
 from flexbase.dynamics.inverse.newton import reach
 from flexbase.errors import InputError, Unreachable
-from flexbase.linear.linearise import HasGain
 from flexbase.measures import Measure
+from flexbase.model.loop import HasGain
 from flexbase.model.task import check_branch
 from flexbase.plant import Plant
 from flexbase.study.layout.placement import make_placement

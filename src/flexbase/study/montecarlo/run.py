@@ -10,8 +10,8 @@ import numpy as np
 
 from flexbase.checks import Array, choose
 from flexbase.errors import FlexbaseWarning, InputError, MissingExtra, nearest_name
-from flexbase.linear.linearise import HasGain
 from flexbase.measures import MEASURES, Measure
+from flexbase.model.loop import HasGain
 from flexbase.model.mounted import MountedArm
 from flexbase.plant import Plant, Pose
 from flexbase.study.montecarlo.collect import Progress, run_all, to_dataset

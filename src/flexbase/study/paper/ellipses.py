@@ -13,9 +13,9 @@ from flexbase.checks import Array
 from flexbase.compensators import design
 from flexbase.compensators.methods.exact import compensability
 from flexbase.errors import FlexbaseWarning, Infeasible, InputError
-from flexbase.linear.linearise import Gain
 from flexbase.linear.modal import modes
 from flexbase.measures.manipulability import Manipulability, manipulability
+from flexbase.model.loop import Gain
 from flexbase.plant import Plant, Pose
 from flexbase.study.paper.example import DESIGN_TIP
 

@@ -13,8 +13,8 @@ from flexbase.dynamics.inverse.arm_angles import arm_angles_of_many
 from flexbase.dynamics.inverse.two_joint_arm import two_joint_arm
 from flexbase.dynamics.kinematics import forward
 from flexbase.errors import InputError
-from flexbase.linear.linearise import HasGain
 from flexbase.measures import MEASURES
+from flexbase.model.loop import HasGain
 from flexbase.plant import Plant
 from flexbase.sweeps.engine.evaluate import Engine
 from flexbase.sweeps.engine.question import Question

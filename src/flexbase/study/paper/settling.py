@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from flexbase.linear.linearise import HasGain
+from flexbase.model.loop import HasGain
 from flexbase.plant import Plant
 from flexbase.simulation import Run, simulate
 from flexbase.study.paper.example import DESIGN_TIP, START_TIP

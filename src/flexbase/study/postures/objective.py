@@ -11,8 +11,8 @@ from flexbase.checks import Array, choose
 from flexbase.dynamics.inverse.posture_criteria import Criterion
 from flexbase.dynamics.inverse.starts import spread_starts
 from flexbase.errors import InputError
-from flexbase.linear.linearise import HasGain
 from flexbase.measures import MEASURES, Measure
+from flexbase.model.loop import HasGain
 from flexbase.model.mounted import MountedArm
 from flexbase.plant import Plant
 from flexbase.sweeps.engine.question import Question

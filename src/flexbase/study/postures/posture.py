@@ -14,8 +14,8 @@ from flexbase.dynamics.inverse.newton import TOLERANCE, TipProblem, solve_rows
 from flexbase.dynamics.inverse.self_motion import climb, idle_joints
 from flexbase.dynamics.inverse.starts import spread_starts
 from flexbase.errors import SingularArm, Unreachable
-from flexbase.linear.linearise import HasGain
 from flexbase.measures import Measure
+from flexbase.model.loop import HasGain
 from flexbase.model.task import check_branch
 from flexbase.plant import Plant, Pose
 from flexbase.study.layout.placement import Placement

@@ -11,7 +11,7 @@ import numpy as np
 
 from flexbase.checks import Array
 from flexbase.errors import InputError
-from flexbase.linear.linearise import HasGain
+from flexbase.model.loop import HasGain
 from flexbase.plant import Plant
 from flexbase.study.robust_configurations.continuation import Equation, follow, near_polyline
 from flexbase.study.robust_configurations.misalignment import Misalignment, make_misalignment, tips_of

@@ -11,10 +11,10 @@ from flexbase.checks import Array
 from flexbase.dynamics.kinematics import forward
 from flexbase.dynamics.task import task_value
 from flexbase.errors import InputError
-from flexbase.linear.linearise import HasGain
 from flexbase.linear.reduced import misalignment
 from flexbase.measures import MEASURES
 from flexbase.model.digest import model_digest
+from flexbase.model.loop import HasGain
 from flexbase.model.mounted import MountedArm
 from flexbase.plant import Plant
 from flexbase.study.postures.objective import gain_or_none

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from flexbase.checks import Array, check_length
 from flexbase.dynamics.inverse.newton import TipProblem, reach
 from flexbase.errors import InputError
-from flexbase.linear.linearise import HasGain
 from flexbase.measures import MEASURES
+from flexbase.model.loop import HasGain
 from flexbase.plant import Plant
 from flexbase.study.robust_configurations.misalignment import Misalignment, make_misalignment, tips_of
 from flexbase.study.tables import write_rows
