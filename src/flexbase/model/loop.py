@@ -5,15 +5,15 @@ A verb takes a `Loop`, or a compensator alone, and asks `loop_on` for the `LoopS
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
+from flexbase.cautions import caution
 from flexbase.checks import Array, check_symmetric, finite_array
-from flexbase.errors import FlexbaseWarning, InputError
+from flexbase.errors import InputError
 from flexbase.model.mounted import MountedArm
 from flexbase.model.sensing import TYPICAL, Sensing, checked_sensing
 from flexbase.model.task import Gains, checked_gains
@@ -108,14 +108,14 @@ def gain_on(arm: MountedArm, compensator: object) -> Array:
     E = getattr(compensator, "E", None)
     if E is None:
         raise InputError(
-            f"compensator: {type(compensator).__name__} has no gain E. Give what `design` or `load_compensator` returned."
+            f"compensator: {type(compensator).__name__} has no gain E. Give what design or load_compensator returned."
         )
     given = finite_array("compensator E", E)
     if given.shape != (arm.n, arm.n):
         raise InputError(f"compensator: E has shape {given.shape}, but {arm.name} has {arm.n} arm joints.")
     made_for = getattr(compensator, "robot", arm.name)
     if made_for != arm.name:
-        warnings.warn(f'compensator: designed for "{made_for}", used on "{arm.name}".', FlexbaseWarning, stacklevel=3)
+        caution(f'compensator: designed for "{made_for}", used on "{arm.name}".')
     return check_symmetric("compensator E", given, "")
 
 
