@@ -78,7 +78,7 @@ def test_both_targets_hold_exactly(n, objective):
         size = np.abs(R).max()
         assert pytest.approx(R.T, rel=0.0, abs=1e-8 * size) == R
         assert np.linalg.eigvalsh(R + R.T)[0] > -1e-8 * size
-        mode = flexbase.modes(pose, flexbase.linear.linearise.Gain(E))[0]
+        mode = flexbase.modes(pose, flexbase.model.loop.Gain(E))[0]
         assert abs(mode.robustness) < 1e-12 * size or (n == 1 and mode.robustness > 0.0)
         assert mode.alignment == pytest.approx(1.0, abs=1e-12)
     assert solved >= 6
