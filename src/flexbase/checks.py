@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from numbers import Real
-from typing import TypeVar
+from numbers import Integral, Real
+from types import UnionType
+from typing import Any, TypeVar, Union, get_args, get_origin
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flexbase.errors import InputError, nearest_name
+from flexbase.requests import options_of
 
 Array = NDArray[np.float64]
 Choice = TypeVar("Choice")
+WORDS = {float: "a number", int: "a whole number", str: "a word", bool: "True or False"}
 FARTHEST = 1e6  # rad or m of a joint or a target: beyond, sine and cosine lose their digits
 
 
@@ -106,3 +109,34 @@ def choose(name: str, value: str, valid: Mapping[str, Choice]) -> Choice:
     if value not in valid:
         raise InputError(f'{name}: "{value}" is unknown. {nearest_name(value, valid)}')
     return valid[value]
+
+
+def check_request(name: str, request: object, kind: type) -> None:
+    """Raises InputError where something else stands for a request, or a field holds another kind of value or choice.
+
+    Whether a number is one that makes sense is for the request itself to say.
+    """
+    if not isinstance(request, kind):
+        raise InputError(f"{name}: {type(request).__name__} given. Give a {kind.__name__}, such as {kind.__name__}().")
+    for one in options_of(kind):
+        value = getattr(request, one.name)
+        if not _is_of(one.kind, value):
+            wanted = getattr(one.kind, "__name__", str(one.kind))
+            raise InputError(f"{one.name}: {value!r} is not {WORDS.get(one.kind, wanted)}. Give {one.text}.")
+        if one.choices and value is not None:
+            choose(one.name, value, dict.fromkeys(one.choices))
+
+
+def _is_of(kind: Any, value: object) -> bool:
+    """Whether a value is of a field's kind."""
+    if get_origin(kind) in (Union, UnionType):
+        return any(_is_of(one, value) for one in get_args(kind))
+    if get_origin(kind) is tuple:
+        kinds = get_args(kind)
+        if not isinstance(value, tuple | list):
+            return False
+        each = kinds[:1] * len(value) if kinds[1:] == (...,) else kinds
+        return len(each) == len(value) and all(map(_is_of, each, value))
+    if kind in (float, int):
+        return not isinstance(value, bool) and isinstance(value, Real if kind is float else Integral)
+    return isinstance(value, kind)

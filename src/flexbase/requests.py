@@ -6,7 +6,14 @@ A request is a frozen dataclass whose fields are made by `asked`. Whoever asks a
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from typing import Any, NamedTuple, get_type_hints
+
+Progress = Callable[[str, int, int], None]  # what is being done, how much of it is done, how much there is
+
+
+def no_progress(what: str, done: int, total: int) -> None:
+    """Nobody watches."""
 
 
 class Option(NamedTuple):
