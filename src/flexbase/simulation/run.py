@@ -162,7 +162,7 @@ def _trouble(goal: Pose, E: Array | None, solver: DOP853, steps: int) -> str | N
         return f"the loop is too fast to follow ({MOST_STEPS} steps; lower the gains of light joints)"
     if not np.all(np.isfinite(solver.y)) or float(np.abs(solver.y[goal.arm.N :]).max()) > FASTEST:
         return "the motion diverged"
-    if not keeps_inertia(forward(goal.arm.mechanism, unstack(q, 1)), E):
+    if not keeps_inertia(goal.arm, forward(goal.arm.mechanism, unstack(q, 1)), E):
         return "M - E was no longer positive definite"
     return None
 

@@ -11,27 +11,23 @@ import numpy as np
 
 from flexbase.control.measured import Measured
 from flexbase.control.null_space import Law
-from flexbase.dynamics.forces import bias_forces
-from flexbase.dynamics.inertia import mass_matrix
 from flexbase.dynamics.kinematics import Frames, forward, task_jacobian
+from flexbase.dynamics.motion import equation_of_motion, under_gain
 from flexbase.dynamics.rotation_vector import tip_error
-from flexbase.dynamics.variation import varied_base, varied_frames
+from flexbase.dynamics.variation import varied_frames
 from flexbase.model.digest import model_digest
 from flexbase.plant import Pose
 from flexbase.simulation.result import SETTLED
+from flexbase.simulation.runge_kutta import BEGIN, END, MIDDLE, State, runge_kutta
 from flexbase.trace.algebra import (
     Matrix,
     Scalar,
     Vector,
     absolute,
-    add,
     larger,
     ldl,
     matvec,
-    minus,
-    mul,
     norm,
-    plus,
     scale,
     select,
     smaller,
@@ -77,15 +73,14 @@ class Step:
         taken, peak, outside, speed, least = inputs[2 * N : self.state]
         step, begin, switch, *rest = inputs[self.state :]
         law, values = self.law_of(rest[:n], switch), dict(zip(self.varied, rest[n:], strict=True))
-        time, half, inside = begin + taken * step, 0.5 * step, EDGE * step
+        time, inside = begin + taken * step, EDGE * step
+        when = {BEGIN: time + inside, MIDDLE: time + 0.5 * step, END: time + (step - inside)}
 
-        first, error, pivots = self._answer(law, values, time + inside, q, rates)
-        rates2 = _moved(rates, half, first)
-        second = self._answer(law, values, time + half, _moved(q, half, rates), rates2)[0]
-        rates3 = _moved(rates, half, second)
-        third = self._answer(law, values, time + half, _moved(q, half, rates2), rates3)[0]
-        rates4 = _moved(rates, step, third)
-        fourth = self._answer(law, values, time + (step - inside), _moved(q, step, rates3), rates4)[0]
+        def slope(where: float, moved: State) -> State:
+            return moved[1], self._answer(law, values, when[where], *moved)[0]
+
+        first, error, pivots = self._answer(law, values, when[BEGIN], q, rates)
+        joints, speeds = runge_kutta(slope, (q, rates), step, (rates, first))
 
         size = self.size(error)
         for pivot in pivots:
@@ -93,8 +88,8 @@ class Step:
         for rate in rates:
             speed = larger(speed, absolute(rate))
         return [
-            *_advanced(q, step, rates, rates2, rates3, rates4),
-            *_advanced(rates, step, first, second, third, fourth),
+            *joints,
+            *speeds,
             taken + 1.0,
             larger(peak, size),
             select(size >= SETTLED, taken, outside),
@@ -107,18 +102,12 @@ class Step:
     ) -> tuple[Vector, Vector, Vector]:
         """Accelerations, tip error, pivots of M - E: what the plant does under the law.  [U03 eq 1, 2, 11]"""
         arm = self.goal.arm
-        m = arm.m
         frames = varied_frames(arm, forward(arm.mechanism, q), values)
         error = tip_error(frames, arm.task, self.goal.target)
         torque = law.torque(self._seen(frames, values, time, q, rates, error))
-        spring = minus(
-            matvec(varied_base(arm, "stiffness", values), minus(self.goal.equilibrium.tolist(), q[:m])),
-            matvec(varied_base(arm, "damping", values), rates[:m]),
-        )
-        rubbed = [mul(float(c), rate) for c, rate in zip(arm.mechanism.friction, rates, strict=True)]
-        resisted = plus(bias_forces(frames, rates, arm.gravity.tolist()), rubbed)
-        unit, pivots = ldl(self._inertia(mass_matrix(frames), values))
-        return solve_ldl(unit, pivots, minus((*spring, *torque), resisted)), error, pivots
+        M, force = equation_of_motion(arm, frames, q, rates, torque, self.goal.equilibrium.tolist(), varied=values)
+        unit, pivots = ldl(under_gain(arm, M, self.E, values.get("compensation", 1.0)))
+        return solve_ldl(unit, pivots, force), error, pivots
 
     def _seen(
         self, frames: Frames, values: dict[str, Scalar], time: Scalar, q: Vector, rates: Vector, error: Vector
@@ -132,16 +121,6 @@ class Step:
             rates[arm.m :],
             scale(values.get("task_stiffness", 1.0), error),
             scale(values.get("task_damping", 1.0), tip_rate),
-        )
-
-    def _inertia(self, M: Matrix, values: dict[str, Scalar]) -> Matrix:
-        """M - blkdiag(0, E)."""
-        if self.E is None:
-            return M
-        m, share = self.goal.arm.m, values.get("compensation", 1.0)
-        return tuple(
-            tuple(entry - mul(share, self.E[i - m][j - m]) if min(i, j) >= m else entry for j, entry in enumerate(row))
-            for i, row in enumerate(M)
         )
 
     def size(self, error: Vector) -> Scalar:
@@ -172,12 +151,3 @@ def described(thing: Any) -> str:
         words = ", ".join(f"{one.name} {described(getattr(thing, one.name))}" for one in fields(thing))
         return f"{type(thing).__qualname__}({words})"
     return str(thing.__qualname__) if callable(thing) else repr(thing)
-
-
-def _moved(x: Vector, time: Scalar, slope: Vector) -> Vector:
-    return tuple(add(entry, mul(time, change)) for entry, change in zip(x, slope, strict=True))
-
-
-def _advanced(x: Vector, time: Scalar, one: Vector, two: Vector, three: Vector, four: Vector) -> list[Scalar]:
-    parts = zip(x, one, two, three, four, strict=True)
-    return [value + time / 6.0 * (a + 2.0 * (b + c) + d) for value, a, b, c, d in parts]

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from flexbase.checks import Array
-from flexbase.dynamics.forces import bias_forces
 from flexbase.dynamics.inertia import mass_matrix
 from flexbase.dynamics.kinematics import Frames
+from flexbase.dynamics.motion import equation_of_motion, under_gain
+from flexbase.model.mounted import MountedArm
 from flexbase.plant import Pose
-from flexbase.trace.algebra import stack, unstack
+from flexbase.trace.algebra import Matrix, stack, unstack
 
 
 def accelerations(pose: Pose, frames: Frames, q: Array, rates: Array, torque: Array, E: Array | None) -> Array:
@@ -22,23 +23,21 @@ def accelerations(pose: Pose, frames: Frames, q: Array, rates: Array, torque: Ar
     Assumes M - E positive definite; see `keeps_inertia`.
     """
     arm = pose.arm
-    base = arm.base
-    M = inertia_under(frames, E)
-    spring = (pose.equilibrium - q[..., : arm.m]) @ base.stiffness - rates[..., : arm.m] @ base.damping
-    bias = stack(bias_forces(frames, unstack(rates, 1), arm.gravity.tolist()))
-    force = np.concatenate([spring, torque], axis=-1) - bias - arm.mechanism.friction * rates
-    return np.asarray(np.linalg.solve(M, force[..., None])[..., 0])
+    M, force = equation_of_motion(
+        arm, frames, unstack(q, 1), unstack(rates, 1), unstack(torque, 1), pose.equilibrium.tolist()
+    )
+    return solved(arm, M, stack(force), E)
 
 
-def inertia_under(frames: Frames, E: Array | None) -> Array:
-    """M - blkdiag(0, E) at a configuration or a batch of them, shape (..., N, N)."""
-    M = stack(mass_matrix(frames))
-    if E is not None:
-        n = len(E)
-        M[..., -n:, -n:] -= E
-    return M
+def solved(arm: MountedArm, M: Matrix, force: Array, E: Array | None) -> Array:
+    """q'' of (M - blkdiag(0, E)) q'' = force, shape (..., N)."""
+    whole = stack(under_gain(arm, M, None if E is None else E.tolist()))
+    return np.asarray(np.linalg.solve(whole, force[..., None])[..., 0])
 
 
-def keeps_inertia(frames: Frames, E: Array | None) -> bool:
+def keeps_inertia(arm: MountedArm, frames: Frames, E: Array | None) -> bool:
     """Whether M - E is positive definite there."""
-    return E is None or float(np.linalg.eigvalsh(inertia_under(frames, E))[..., 0].min()) > 0.0
+    if E is None:
+        return True
+    whole = stack(under_gain(arm, mass_matrix(frames), E.tolist()))
+    return float(np.linalg.eigvalsh(whole)[..., 0].min()) > 0.0

@@ -6,12 +6,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from flexbase.dynamics.forces import bias_forces
-from flexbase.dynamics.inertia import mass_matrix
-from flexbase.dynamics.kinematics import Frames, forward, task_jacobian
+from flexbase.dynamics.kinematics import Frames, forward
+from flexbase.dynamics.motion import equation_of_motion
 from flexbase.model.mounted import MountedArm
-from flexbase.simulation.plants.runge_kutta import State, runge_kutta
-from flexbase.trace.algebra import Scalar, Vector, ldl, matvec, minus, mul, plus, scale, solve_ldl, transpose
+from flexbase.simulation.runge_kutta import State, runge_kutta
+from flexbase.trace.algebra import Scalar, Vector, ldl, minus, scale, solve_ldl
 
 Function = Callable[[Vector], Sequence[Scalar]]
 
@@ -56,7 +55,7 @@ class Held:
         q, rates, rest, torque, tip, lagged, (time, pace) = split(inputs, (*self.sizes, arm.n, 2))
         held = Forces(rest, torque, tip)
 
-        def slope(state: State) -> State:
+        def slope(_: float, state: State) -> State:
             joints, speeds, seen = state
             frames = forward(arm.mechanism, joints)
             return speeds, self._accelerations(frames, speeds, joints, held), scale(pace, minus(speeds[arm.m :], seen))
@@ -64,17 +63,8 @@ class Held:
         return [x for part in runge_kutta(slope, (q, rates, lagged), time) for x in part]
 
     def _accelerations(self, frames: Frames, rates: Vector, q: Vector, held: Forces) -> Vector:
-        """q'' of M q'' = [tau_p; tau] + J^T f - h - g - friction.  [U03 eq 1, 2]"""
-        arm = self.arm
-        m, base = arm.m, arm.base
-        spring = minus(
-            matvec(base.stiffness.tolist(), minus(held.rest, q[:m])), matvec(base.damping.tolist(), rates[:m])
-        )
-        pushed = matvec(transpose(task_jacobian(frames, arm.task.indices)), held.tip)
-        rubbed = [mul(float(c), rate) for c, rate in zip(arm.mechanism.friction, rates, strict=True)]
-        driven = plus((*spring, *held.torque), pushed)
-        force = minus(minus(driven, rubbed), bias_forces(frames, rates, tuple(arm.gravity.tolist())))
-        return solve_ldl(*ldl(mass_matrix(frames)), force)
+        M, force = equation_of_motion(self.arm, frames, q, rates, held.torque, held.rest, tip_force=held.tip)
+        return solve_ldl(*ldl(M), force)
 
 
 def split(inputs: Vector, sizes: Sequence[int]) -> list[Vector]:

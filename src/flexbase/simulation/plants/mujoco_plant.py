@@ -11,7 +11,9 @@ from flexbase.checks import Array
 from flexbase.dynamics.kinematics import Frames
 from flexbase.errors import InputError
 from flexbase.model.formats.quiet_mujoco import quiet_mujoco
+from flexbase.model.mounted import MountedArm
 from flexbase.plant import Pose
+from flexbase.simulation.plants.builtin import solved
 from flexbase.simulation.plants.mjcf import mjcf_of
 
 
@@ -19,9 +21,10 @@ from flexbase.simulation.plants.mjcf import mjcf_of
 class MujocoPlant:
     """A plant compiled by MuJoCo. Made by `mujoco_plant`; not to be shared between threads.
 
-    model, data : MuJoCo's MjModel, and an MjData of it
+    arm : that was compiled; model, data : MuJoCo's MjModel, and an MjData of it
     """
 
+    arm: MountedArm
     model: Any
     data: Any
 
@@ -45,11 +48,8 @@ class MujocoPlant:
         result = np.empty(q.shape)
         for state in np.ndindex(q.shape[:-1]):
             M, force = self.equation(q[state], rates[state])
-            n = torque.shape[-1]
-            force[-n:] += torque[state]
-            if E is not None:
-                M[-n:, -n:] -= E
-            result[state] = np.linalg.solve(M, force)
+            force[self.arm.m :] += torque[state]
+            result[state] = solved(self.arm, M.tolist(), force, E)
         return result
 
 
@@ -59,6 +59,6 @@ def mujoco_plant(pose: Pose) -> MujocoPlant:
     try:
         with quiet_mujoco("mujoco") as mujoco:
             model = mujoco.MjModel.from_xml_string(text)
-            return MujocoPlant(model, mujoco.MjData(model))
+            return MujocoPlant(pose.arm, model, mujoco.MjData(model))
     except ValueError as fault:
         raise InputError(f"{pose.plant.name}: MuJoCo refuses the plant: {' '.join(str(fault).split())}") from fault

@@ -7,15 +7,23 @@ from collections.abc import Callable
 from flexbase.trace.algebra import Scalar, Vector, add, mul
 
 State = tuple[Vector, ...]  # parts, such as joints and rates
+BEGIN, MIDDLE, END = 0.0, 0.5, 1.0  # where in a step a slope is asked for
 
 
-def runge_kutta(slope: Callable[[State], State], state: State, time: Scalar) -> State:
-    """The state after a time, from its slope, part by part."""
+def runge_kutta(
+    slope: Callable[[float, State], State], state: State, time: Scalar, first: State | None = None
+) -> State:
+    """The state after a time, from its slope, part by part.
+
+    slope : of where in the step, one of BEGIN, MIDDLE and END, and the state there; first : that at BEGIN, where it is
+        known already
+    """
     half = mul(0.5, time)
-    first = slope(state)
-    second = slope(_moved(state, half, first))
-    third = slope(_moved(state, half, second))
-    fourth = slope(_moved(state, time, third))
+    if first is None:
+        first = slope(BEGIN, state)
+    second = slope(MIDDLE, _moved(state, half, first))
+    third = slope(MIDDLE, _moved(state, half, second))
+    fourth = slope(END, _moved(state, time, third))
     return tuple(
         tuple(x + time / 6.0 * (a + 2.0 * (b + c) + d) for x, a, b, c, d in zip(*part, strict=True))
         for part in zip(state, first, second, third, fourth, strict=True)
