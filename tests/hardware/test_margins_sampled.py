@@ -12,6 +12,7 @@ from flexbase.linear.discrete.disk_margin import disk_margin, structured_norm
 from flexbase.linear.discrete.loop_margins import delay_margin
 from flexbase.linear.discrete.system import Discrete, delay, parallel, series, static
 from flexbase.model.sensing import Sensing
+from flexbase.sampled.changes import Changed, changed_pose
 from flexbase.sampled.closed import (
     close_loop,
     dynamic_stiffness,
@@ -21,7 +22,7 @@ from flexbase.sampled.closed import (
     tip_stiffness,
 )
 from flexbase.sampled.controller import SampledController, joint_damping, pd_with_gain
-from flexbase.sampled.plant import Changed, changed_pose, sampled_plant
+from flexbase.sampled.plant import sampled_plant
 from flexbase.sampled.verdict import hardware_verdict
 from flexbase.synthesis import controller_for
 

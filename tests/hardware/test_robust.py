@@ -7,13 +7,13 @@ import pytest
 
 import flexbase as fb
 from flexbase.model.sensing import Sensing
+from flexbase.sampled.judged import Judged, robots_at
 from flexbase.sampled.verdict import hardware_verdict
 from flexbase.study.workspace import random_poses
 from flexbase.synthesis import controller_for
 from flexbase.synthesis.methods.robust import STAGES
 from flexbase.synthesis.search.shaping import slow_gain
 from flexbase.synthesis.search.stiffest import stiffest
-from flexbase.synthesis.search.trial import Trial, robots_at
 
 
 @pytest.mark.parametrize("seed", [3, 4])
@@ -75,7 +75,7 @@ def test_quick_acceptance_is_the_verdicts(paper: fb.Plant) -> None:
     for pose in random_poses(paper, 4, 9):
         robots = robots_at(pose, Sensing())
         for scale in (0.03, 0.3, 1.0):
-            trial = Trial(controller_for(pose, "coprime", scale=scale), robots)
+            trial = Judged(controller_for(pose, "coprime", scale=scale), robots)
             verdict = hardware_verdict(trial.controller)
             assert trial.survives == verdict.survives
             assert trial.accepted() == (verdict.survives and verdict.has_margin)

@@ -13,8 +13,9 @@ from flexbase import Gains, InputError, MissingExtra
 from flexbase.dynamics.kinematics import forward
 from flexbase.errors import import_extra
 from flexbase.model.sensing import Sensing
+from flexbase.sampled.changes import Changed, changed_pose
 from flexbase.sampled.controller import pd_with_gain
-from flexbase.sampled.plant import Changed, changed_pose, sampled_plant
+from flexbase.sampled.plant import sampled_plant
 from flexbase.simulation.hardware.result import Push, SampledRun
 from flexbase.simulation.hardware.run import simulate_sampled, simulate_sampled_many
 from flexbase.simulation.plants import builtin_held

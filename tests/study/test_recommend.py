@@ -47,7 +47,10 @@ def verdict(loop: SampledController) -> HardwareVerdict:
 
 
 def candidate(name: str, verdict: HardwareVerdict, **changes: object) -> Candidate:
-    return Candidate(name, "", replace(verdict, method=name, **changes))  # type: ignore[arg-type]
+    figures = {key: value for key, value in changes.items() if key in verdict.figures}
+    others = {key: value for key, value in changes.items() if key not in verdict.figures}
+    told = replace(verdict, method=name, figures={**verdict.figures, **figures}, **others)  # type: ignore[arg-type]
+    return Candidate(name, "", told)
 
 
 def test_grade_comes_before_stiffness(verdict: HardwareVerdict) -> None:

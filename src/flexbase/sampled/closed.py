@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -37,8 +38,16 @@ class SampledLoop:
 
 def close_loop(pose: Pose, controller: SampledController) -> SampledLoop:
     """The controller on the plant of a pose, which need not be the one that it was made for."""
-    plants = plants_in_a_period(pose, controller.sensing)
-    first, *held = (feedback(plant, controller.system, external=pose.arm.k).A for plant in plants[:2])
+    return _around(plants_in_a_period(pose, controller.sensing), controller, pose.arm.k)
+
+
+def period_radius(plants: Sequence[Discrete], controller: SampledController, k: int) -> float:
+    """Spectral radius of a sample on plants that `plants_in_a_period` made, with k tip forces each."""
+    return _around(plants, controller, k).radius
+
+
+def _around(plants: Sequence[Discrete], controller: SampledController, k: int) -> SampledLoop:
+    first, *held = (feedback(plant, controller.system, external=k).A for plant in plants[:2])
     if not held:
         return SampledLoop(first, 1)
     return SampledLoop(np.linalg.matrix_power(held[0], len(plants) - 1) @ first, len(plants))

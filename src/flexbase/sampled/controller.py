@@ -26,6 +26,7 @@ class SampledController:
     system : inputs are tip error (k), joints (n) and accelerations (n); outputs are n torques
     E : the gain on accelerations inside it, shape (n, n), or None
     notes : what its maker reports, such as b_opt
+    judged : what its maker found out about it, a `flexbase.sampled.judged.Judged`; not sent to other processes
     """
 
     name: str
@@ -34,6 +35,10 @@ class SampledController:
     system: Discrete
     E: Array | None = None
     notes: dict[str, Any] = field(default_factory=dict)
+    judged: object = field(default=None, repr=False)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**vars(self), "judged": None}
 
 
 def task_pd(pose: Pose, sensing: Sensing, gains: Gains) -> Discrete:

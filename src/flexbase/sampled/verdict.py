@@ -3,71 +3,61 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
-from flexbase.linear.discrete.disk_margin import disk_margin
-from flexbase.linear.discrete.loop_margins import delay_margin, lag_margin
-from flexbase.linear.margins import algebraic_loop_radius, algebraic_loop_radius_per_joint
 from flexbase.plant import Pose
-from flexbase.sampled.closed import (
-    close_loop,
-    dynamic_stiffness,
-    loop_gain,
-    sensitivities,
-    tip_correction,
-    tip_stiffness,
-)
+from flexbase.sampled.changes import Changed
 from flexbase.sampled.controller import SampledController
-from flexbase.sampled.plant import Changed, changed_pose, eight_changes
-
-GOOD_MARGIN = 0.3  # disk margin: gains from 0.74 to 1.35, phases to 17 degrees
+from flexbase.sampled.figures import FIGURES
+from flexbase.sampled.judged import GOOD_MARGIN, SAFE, STABLE, UNSTABLE, Judged, judged
 
 
 @dataclass(frozen=True)
 class HardwareVerdict:
-    """What a sampled loop does at a pose, and what it bears.
+    """What a sampled loop does at a pose, and what it bears. Every figure of `FIGURES` is an attribute too.
 
     stable : spectral radius below 1
-    disk_margin_torque, disk_margin_sensor : alpha with all torque channels, or all sensors used, perturbed at once
-    delay_margin_s, lag_margin_s : further delay and first-order lag of all torques; None: no limit, or unstable
-    algebraic_loop_radius, algebraic_loop_radius_per_joint : of the gain on accelerations inside; None without one
-    worst_radius, worst_change : largest spectral radius over the changed robots, and which one
-    survives : whether all of the changed robots are stable; failed : those that are not
-    tip_stiffness : smallest static stiffness at the tip [N/m or N m/rad]; None if unstable
-    dynamic_stiffness : smallest at any frequency; None if unstable
-    tip_correction : share of a constant tip error, unseen by the joints, that is taken away at rest; None if unstable
-    time_constant_s : of the slowest motion; None if unstable
+    survives : whether all of the changed robots are stable; failed : those that are not; worst_change : the worst one
+    figures : name -> value; None where it has no meaning, or was left out of a brief verdict
     """
 
     method: str
     stable: bool
-    spectral_radius: float
-    disk_margin_torque: float
-    disk_margin_sensor: float
-    delay_margin_s: float | None
-    lag_margin_s: float | None
-    algebraic_loop_radius: float | None
-    algebraic_loop_radius_per_joint: float | None
-    worst_radius: float
-    worst_change: str
     survives: bool
     failed: tuple[str, ...]
-    tip_stiffness: float | None
-    dynamic_stiffness: float | None
-    tip_correction: float | None
-    time_constant_s: float | None
+    worst_change: str
+    figures: dict[str, float | None]
+
+    def __getattr__(self, name: str) -> float | None:
+        if name in FIGURES and "figures" in vars(self):
+            return self.figures[name]
+        raise AttributeError(f"a verdict has no figure {name!r}: there are {', '.join(FIGURES)}")
+
+    @property
+    def smaller_margin(self) -> float:
+        """The smaller one of both disk margins."""
+        return min(self.figures["disk_margin_torque"] or 0.0, self.figures["disk_margin_sensor"] or 0.0)
 
     @property
     def has_margin(self) -> bool:
         """Whether both disk margins are good."""
-        return min(self.disk_margin_torque, self.disk_margin_sensor) >= GOOD_MARGIN
+        return self.smaller_margin >= GOOD_MARGIN
+
+    @property
+    def grade(self) -> int:
+        """3: stable, with margins, for all changed robots; 2: with margins or for all of them; 1: stable; 0: not."""
+        return STABLE + int(self.has_margin) + int(self.survives) if self.stable else UNSTABLE
+
+    @property
+    def safe(self) -> bool:
+        """Stable, with good disk margins, and on all changed robots stable."""
+        return self.grade == SAFE
 
     def to_dict(self) -> dict[str, Any]:
         """Plain numbers."""
-        return asdict(self)
+        said = {name: value for name, value in vars(self).items() if name != "figures"}
+        return {**said, "failed": list(self.failed), **self.figures}
 
     def summary(self) -> str:
         """What a person needs, in four lines."""
@@ -96,36 +86,16 @@ def hardware_verdict(
     changes : robots that differ from the model; `eight_changes` if left out
     brief : leave out what takes longest: delay and lag margins and the radii of the algebraic loop, None then
     """
-    here = controller.pose if pose is None else pose
-    loop = close_loop(here, controller)
-    step, radius = controller.sensing.step, loop.radius
-    stable = radius < 1.0
-    tried = eight_changes(here.arm.n) if changes is None else tuple(changes)
-    radii = [close_loop(changed_pose(here, change), controller).radius for change in tried]
-    worst = int(np.argmax(radii)) if radii else -1
-    margins = [disk_margin(one).alpha for one in sensitivities(here, controller)] if stable else [0.0, 0.0]
-    around = None if brief or not stable else loop_gain(here, controller)
-    E = None if brief else controller.E
+    return verdict_of(judged(controller, pose, changes), brief=brief)
+
+
+def verdict_of(found: Judged, *, brief: bool = False) -> HardwareVerdict:
+    """A judged loop as a verdict: all figures, or the brief ones."""
     return HardwareVerdict(
-        method=controller.name,
-        stable=stable,
-        spectral_radius=radius,
-        disk_margin_torque=margins[0],
-        disk_margin_sensor=margins[1],
-        delay_margin_s=None if around is None else _finite(delay_margin(around)),
-        lag_margin_s=None if around is None else _finite(lag_margin(around)),
-        algebraic_loop_radius=None if E is None else algebraic_loop_radius(here, E),
-        algebraic_loop_radius_per_joint=None if E is None else algebraic_loop_radius_per_joint(here, E),
-        worst_radius=max(radii, default=radius),
-        worst_change=tried[worst].label if radii else "none",
-        survives=stable and all(one < 1.0 for one in radii),
-        failed=tuple(change.label for change, one in zip(tried, radii, strict=True) if one >= 1.0),
-        tip_stiffness=tip_stiffness(here, controller) if stable else None,
-        dynamic_stiffness=dynamic_stiffness(here, controller) if stable else None,
-        tip_correction=tip_correction(here, controller) if stable else None,
-        time_constant_s=-step / float(np.log(radius)) if stable and radius > 0.0 else None,
+        method=found.controller.name,
+        stable=found.stable,
+        survives=found.survives,
+        failed=found.failed,
+        worst_change=found.worst_change,
+        figures={name: found.figure(name) if one.brief or not brief else None for name, one in FIGURES.items()},
     )
-
-
-def _finite(margin: float) -> float | None:
-    return margin if np.isfinite(margin) else None

@@ -18,11 +18,11 @@ from flexbase.control.trajectories import LAWS, JointPath
 from flexbase.dynamics.kinematics import Frames, forward, task_jacobian
 from flexbase.dynamics.task import task_error
 from flexbase.errors import FlexbaseWarning, Infeasible, InputError
-from flexbase.linear.linearise import check_definite_inertia, gain_of
+from flexbase.linear.linearise import check_definite_inertia
 from flexbase.linear.margins import closed_loop_abscissa
-from flexbase.model.loop import HasGain
-from flexbase.model.task import Gains, checked_gains
-from flexbase.plant import Plant, Pose
+from flexbase.model.loop import HasGain, Loop, loop_on
+from flexbase.model.task import Gains
+from flexbase.plant import Plant, Pose, check_plant
 from flexbase.simulation.plants.builtin import keeps_inertia
 from flexbase.simulation.plants.engines import ENGINES, Accelerations
 from flexbase.simulation.result import Run
@@ -66,19 +66,14 @@ def simulate(
     engine : the physics that answers the laws: "builtin", or "mujoco" as an independent witness
     Raises InputError, MissingExtra. A motion that diverges, or leaves M - E > 0, ends early; `Run.stopped` says so.
     """
+    check_plant(plant)
     m = plant.arm.m
-    designed_at = getattr(compensator, "q", None)
-    if designed_at is not None and len(designed_at) != plant.arm.N:
-        designed_at = None  # of another robot: whether its gain fits is judged below
-    there = (
-        goal if isinstance(goal, Pose) else plant.at_tip(goal, near=None if designed_at is None else designed_at[m:])
-    )
+    loop = loop_on(plant.arm, Loop(compensator, gains))
+    gains, E = loop.gains, loop.E
+    there = goal if isinstance(goal, Pose) else plant.at_tip(goal, near=loop.designed_at)
     here = start if isinstance(start, Pose) else plant.at_tip(start, near=there.q[m:])
     if not here.plant.name == there.plant.name == plant.name:
         raise InputError("simulate: the poses belong to another plant. Make them with this plant's at or at_tip.")
-    gains = plant.arm.gains if gains is None else checked_gains(gains, plant.arm.k)
-    if gains is None:
-        raise InputError(f"{plant.name}: no task gains. Add a [control] table to the project, or give gains.")
     if not 0.0 < switch < end < np.inf:
         raise InputError(f"times: switch ({switch:g} s) must lie above 0 and below end ({end:g} s). Give such times.")
     if not end / LARGEST <= interval <= end - switch:
@@ -87,7 +82,6 @@ def simulate(
         raise InputError(f'compensate: "{compensate}" is unknown. Give one of {", ".join(WHEN)}.')
     if not bandwidth > 0.0:
         raise InputError(f"bandwidth: {bandwidth:g} rad/s must be above 0.")
-    E = None if compensator is None else gain_of(there, compensator)
     if E is not None:
         check_definite_inertia(there, E)
     physics = choose("engine", engine, ENGINES)(there)

@@ -12,8 +12,8 @@ import numpy as np
 from flexbase.checks import choose
 from flexbase.errors import FlexbaseWarning, InputError, MissingExtra
 from flexbase.measures import MEASURES, Measure
-from flexbase.model.loop import HasGain
-from flexbase.plant import Plant
+from flexbase.model.loop import HasGain, loop_on
+from flexbase.plant import Plant, check_plant
 from flexbase.sweeps.caveats import check_measures
 from flexbase.sweeps.cells.axis import block_shape, boxes
 from flexbase.sweeps.cells.domain import RANDOM, SAMPLINGS, Grid
@@ -73,11 +73,12 @@ def sweep(
     progress : called with the cells done and all cells
     Raises InputError, MissingExtra. A cell that cannot be judged gets a status instead of values.
     """
+    check_plant(plant)
     names = [measures] if isinstance(measures, str) else list(measures)
     chosen = tuple(choose("measure", name, MEASURES) for name in dict.fromkeys(names))
     check_measures(plant, chosen, "map")
     place = _place(plant, over, shape, bounds, branch, axes, hold, dict(vary or {}), sampling, seed)
-    E = None if compensator is None else _gain(plant, compensator)
+    E = loop_on(plant.arm, compensator).E
     if store is None:
         chosen += _companions(plant, chosen)
     question = _question(plant, chosen, place, tuple(vary or {}), E)
@@ -183,10 +184,3 @@ def _companions(plant: Plant, chosen: Sequence[Measure]) -> tuple[Measure, ...]:
     arm = plant.arm
     lines = [MEASURES[one.zero_line] for one in chosen if one.zero_line]
     return tuple(line for line in lines if line not in chosen and not line.needs(arm.m, arm.n, arm.k))
-
-
-def _gain(plant: Plant, compensator: HasGain) -> np.ndarray:
-    E = np.asarray(compensator.E)
-    if E.shape != (plant.arm.n, plant.arm.n):
-        raise InputError(f"compensator: E has shape {E.shape}, but {plant.name} has {plant.arm.n} arm joints.")
-    return E

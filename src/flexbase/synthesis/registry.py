@@ -2,35 +2,44 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from flexbase.checks import choose
-from flexbase.errors import InputError
-from flexbase.model.sensing import TYPICAL, Sensing, checked_sensing
+from flexbase.model.loop import Loop, loop_on
+from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
-from flexbase.plant import Pose
+from flexbase.plant import Pose, check_pose
 from flexbase.sampled.controller import SampledController
 
 Make = Callable[..., SampledController]  # (pose, sensing, gains, **options)
 
 
 class HardwareMethod(NamedTuple):
-    """A registered method: makes a controller for a pose, a sensing and task gains."""
+    """A registered method: makes a controller for a pose, a sensing and task gains.
+
+    as_given : options with which it keeps to the stiffness that is asked, where it would choose a softer one by itself
+    law : what stays when its controller is used elsewhere: "controller", all of it; "gains", task PD, with its E
+        where it has one, that follows the arm
+    """
 
     name: str
     purpose: str
     make: Make
+    as_given: Mapping[str, Any]
+    law: str
 
 
 HARDWARE_METHODS: dict[str, HardwareMethod] = {}
 
 
-def hardware_method(name: str, purpose: str) -> Callable[[Make], Make]:
+def hardware_method(
+    name: str, purpose: str, *, as_given: Mapping[str, Any] | None = None, law: str = "controller"
+) -> Callable[[Make], Make]:
     """Register a maker under a name."""
 
     def register(make: Make) -> Make:
-        HARDWARE_METHODS[name] = HardwareMethod(name, purpose, make)
+        HARDWARE_METHODS[name] = HardwareMethod(name, purpose, make, as_given or {}, law)
         return make
 
     return register
@@ -46,8 +55,6 @@ def controller_for(
     Raises InputError, Infeasible.
     """
     chosen = choose("method", method, HARDWARE_METHODS)
-    used = pose.arm.gains if gains is None else gains
-    if used is None:
-        raise InputError(f"{pose.plant.name}: no task gains. Add a [control] table to the project, or give gains.")
-    declared = (pose.arm.sensing or TYPICAL) if sensing is None else sensing
-    return chosen.make(pose, checked_sensing(declared, pose.arm.n), used, **options)
+    check_pose(pose)
+    loop = loop_on(pose.arm, Loop(gains=gains, sensing=sensing))
+    return chosen.make(pose, loop.sensing, loop.gains, **options)

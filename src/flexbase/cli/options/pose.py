@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -16,7 +15,7 @@ from flexbase.cli.options.words import Vector, numbers
 from flexbase.cli.terminal.digits import listed
 from flexbase.cli.terminal.show import facts
 from flexbase.control.compensator import Compensator, load_compensator
-from flexbase.errors import FlexbaseWarning, InputError
+from flexbase.errors import InputError
 from flexbase.plant import Plant, Pose
 
 Robot = Annotated[str, Parameter(help="bundled name (see: flexbase robots) or path of a project file")]
@@ -61,13 +60,11 @@ def tip_pose(plant: Plant, option: str, tip: Vector, elbow: str | None, near: Po
 
 
 def compensator_of(plant: Plant, path: Path | None) -> Compensator | None:
-    """The compensator in a file, or None. Warns where it was made for another robot. Raises InputError."""
+    """The compensator in a file, or None. Raises InputError."""
     if path is None:
         return None
     with blaming("--compensator"):
         found = load_compensator(path)
-    if found.robot != plant.name:
-        warnings.warn(f'{path}: designed for "{found.robot}", used on "{plant.name}".', FlexbaseWarning, stacklevel=2)
     return found
 
 

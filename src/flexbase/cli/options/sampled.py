@@ -12,7 +12,7 @@ from flexbase.cli.options.sensing import SensingOptions
 from flexbase.cli.options.words import Vector, numbers
 from flexbase.control.compensator import Compensator
 from flexbase.errors import InputError
-from flexbase.linear.linearise import gain_of
+from flexbase.model.loop import Loop, loop_on
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
 from flexbase.sampled.controller import SampledController, pd_with_gain
@@ -21,7 +21,6 @@ from flexbase.simulation.hardware.run import simulate_sampled
 from flexbase.synthesis import HARDWARE_METHODS, controller_for
 
 PUSH = 0.02  # s
-OF = f"of controller: {', '.join(HARDWARE_METHODS)}"
 SAMPLED = Group("Sampled", sort_key=15)
 
 
@@ -55,9 +54,8 @@ class SampledOptions:
             return controller_for(goal, self.method or "none", sensing, used)
         if self.method is not None:
             raise InputError("--method and --compensator are both given. Give one of them.")
-        if used is None:
-            raise InputError(f"{goal.plant.name}: no task gains. Give --stiffness and --damping.")
-        return pd_with_gain(goal, sensing, used, gain_of(goal, law), "compensator")
+        loop = loop_on(goal.arm, Loop(law, used, sensing))
+        return pd_with_gain(goal, loop.sensing, loop.gains, loop.E, "compensator")
 
     def run(self, controller: SampledController, start: Pose, **times: Any) -> SampledRun:
         """The move. Raises InputError, MissingExtra."""

@@ -18,8 +18,8 @@ def tables(found: HardwareStudy) -> list[RenderableType]:
             *(f"{100.0 * share:.0f}" for share in (row.stable_share, row.margin_share, row.perturbed_share)),
             f"{100.0 * row.complete_share:.0f}",
             _stiffness(row),
-            "" if row.tip_correction is None else f"{100.0 * row.tip_correction:.0f}",
-            "" if row.time_constant_s is None else f"{1e3 * row.time_constant_s:.0f}",
+            _shown(row, "tip_correction", 100.0),
+            _shown(row, "time_constant_s", 1e3),
         ]
         for row in found.rows
     ]
@@ -36,7 +36,11 @@ def tables(found: HardwareStudy) -> list[RenderableType]:
     ]
 
 
+def _shown(row: Row, name: str, times: float) -> str:
+    value = row.medians[name]
+    return "" if value is None else f"{times * value:.0f}"
+
+
 def _stiffness(row: Row) -> str:
-    if row.tip_stiffness is None or row.dynamic_stiffness is None:
-        return ""
-    return f"{kilo(row.tip_stiffness)} {kilo(row.dynamic_stiffness)}"
+    at_rest, at_speed = row.medians["tip_stiffness"], row.medians["dynamic_stiffness"]
+    return "" if at_rest is None or at_speed is None else f"{kilo(at_rest)} {kilo(at_speed)}"

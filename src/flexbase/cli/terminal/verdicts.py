@@ -6,7 +6,8 @@ from rich.console import RenderableType
 
 from flexbase.cli.terminal.digits import kilo, number
 from flexbase.cli.terminal.show import facts, table, title
-from flexbase.sampled.verdict import GOOD_MARGIN, HardwareVerdict
+from flexbase.sampled.judged import GOOD_MARGIN
+from flexbase.sampled.verdict import HardwareVerdict
 from flexbase.study.running.comparison import Comparison
 
 COLUMNS = (
@@ -59,8 +60,7 @@ def _row(one: HardwareVerdict) -> list[str]:
             f"{100.0 * (one.tip_correction or 0.0):.0f}",
             _short(1e3 * (one.time_constant_s or 0.0)),
         ]
-    good = one.has_margin and one.survives
-    mark = "*" if good else ""
+    mark = "*" if one.safe else ""
     return [f"{one.method}{mark}", f"{one.spectral_radius:.4f}", margins, bears, f"{one.worst_radius:.4f}", *rest]
 
 

@@ -19,8 +19,8 @@ from flexbase.linear.margins import (
     lag_margin,
 )
 from flexbase.linear.modal import modes
-from flexbase.model.loop import Gain
-from flexbase.model.task import Gains, checked_gains
+from flexbase.model.loop import Gain, Loop, loop_on
+from flexbase.model.task import Gains
 from flexbase.plant import Pose
 
 NEARLY_SINGULAR = 0.01  # lambda_min(M - E) over that of M
@@ -45,7 +45,7 @@ def certify(
     Warns when the algebraic loop does not bear a common delay.
     """
     E = check_symmetric("E", finite_array("E", E), "")
-    gains = pose.arm.gains if gains is None else checked_gains(gains, pose.arm.k)
+    gains = loop_on(pose.arm, Loop(gains=gains)).given_gains
     before, after = modes(pose).modes, modes(pose, Gain(E)).modes
     rho, mu = algebraic_loop_radius(pose, E), algebraic_loop_radius_per_joint(pose, E)
     cautions = (

@@ -17,10 +17,10 @@ from flexbase.dynamics.task import task_error
 from flexbase.dynamics.variation import Parameter, parameters_of
 from flexbase.errors import FlexbaseWarning, InputError
 from flexbase.linear.closed_loop import close_loop
-from flexbase.linear.linearise import check_definite_inertia, gain_of, linearise
-from flexbase.model.loop import HasGain
-from flexbase.model.task import Gains, checked_gains
-from flexbase.plant import Plant, Pose
+from flexbase.linear.linearise import check_definite_inertia, linearise
+from flexbase.model.loop import HasGain, Loop, loop_on
+from flexbase.model.task import Gains
+from flexbase.plant import Plant, Pose, check_plant
 from flexbase.simulation.many.phase import Always, Phase, Tracking
 from flexbase.simulation.many.result import DIVERGED, INDEFINITE, OK, Runs
 from flexbase.simulation.many.step import Step
@@ -68,19 +68,18 @@ def simulate_many(
     threads : all cores if left out
     Raises InputError, MissingExtra. A run that diverges, or leaves M - E > 0, has a status that says so.
     """
+    check_plant(plant)
     arm = plant.arm
     m = arm.m
+    loop = loop_on(arm, Loop(compensator, gains))
+    gains, E = loop.gains, loop.E
     there = goal if isinstance(goal, Pose) else plant.at_tip(goal)
-    gains = arm.gains if gains is None else checked_gains(gains, arm.k)
-    if gains is None:
-        raise InputError(f"{plant.name}: no task gains. Add a [control] table to the project, or give gains.")
     if not 0.0 < switch < end < np.inf:
         raise InputError(f"times: switch ({switch:g} s) must lie above 0 and below end ({end:g} s). Give such times.")
     if compensate not in WHEN:
         raise InputError(f'compensate: "{compensate}" is unknown. Give one of {", ".join(WHEN)}.')
     positive_number("bandwidth", bandwidth, "rad/s")
     positive_number("tolerance", tolerance, "rad or m")
-    E = None if compensator is None else gain_of(there, compensator)
     if E is not None:
         check_definite_inertia(there, E)
     joints, varied = _inputs(plant, starts, dict(vary or {}))

@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 
 from flexbase.errors import FlexbaseError
+from flexbase.model.loop import loop_on
 from flexbase.model.sensing import Sensing
-from flexbase.model.task import Gains
 from flexbase.plant import Pose
-from flexbase.sampled.closed import close_loop
+from flexbase.sampled.changes import Changed, changed_pose, eight_changes
 from flexbase.sampled.controller import SampledController
-from flexbase.sampled.plant import Changed, changed_pose, eight_changes
-from flexbase.study.running.hardware_study import judge
+from flexbase.sampled.judged import judged
 from flexbase.synthesis import HARDWARE_METHODS
 
 RATES = (1e3, 2e3, 4e3)
@@ -106,9 +105,7 @@ def draw_case(pose: Pose, number: int, attempt: int, seed: int, methods: tuple[s
     changes = eight_changes(pose.arm.n)
     change = changes[rng.integers(len(changes))] if rng.random() < 0.5 else Changed("none")
     drive = float(np.exp(rng.uniform(*np.log(DRIVE)))) if rng.random() < 0.5 else 1.0
-    gains = pose.arm.gains
-    assert gains is not None  # checked by the study
-    scaled = Gains(scale * gains.stiffness, np.sqrt(scale) * gains.damping)
+    scaled = loop_on(pose.arm).scaled(scale)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # cautions of designs: the outcome is what counts here
         try:
@@ -116,11 +113,8 @@ def draw_case(pose: Pose, number: int, attempt: int, seed: int, methods: tuple[s
             real = changed_pose(pose, change)
         except (FlexbaseError, np.linalg.LinAlgError):
             return None
-    radius = close_loop(real, controller).radius
-    seen = judge(real, controller)
-    return Case(
-        number, method, scale, change.label, drive, controller, real, radius, bool(seen.margin and seen.perturbed)
-    )
+    found = judged(controller, real)
+    return Case(number, method, scale, change.label, drive, controller, real, found.radius, found.accepted())
 
 
 def _driven(controller: SampledController, drive: float) -> SampledController:

@@ -14,7 +14,8 @@ import numpy as np
 
 from flexbase.checks import choose
 from flexbase.errors import InputError, import_extra
-from flexbase.plant import Plant, Pose
+from flexbase.model.loop import loop_on
+from flexbase.plant import Plant, Pose, check_plant
 from flexbase.study.agreement import move as agreement_move
 from flexbase.study.agreement import nudge as agreement_nudge
 from flexbase.study.agreement.case import Case, Outcome, draw_case
@@ -219,8 +220,8 @@ def agreement_study(
     chosen = tuple(HARDWARE_METHODS) if methods is None else tuple(methods)
     for name in chosen:
         choose("method", name, HARDWARE_METHODS)
-    if plant.arm.gains is None:
-        raise InputError(f"{plant.name}: no task gains. Add a [control] table to the project.")
+    check_plant(plant)
+    _ = loop_on(plant.arm).gains  # raises where there are none
     check_workers(workers)
     drawn = random_poses(plant, poses, seed)
     with _mapper(workers or cores()) as each:

@@ -8,12 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from flexbase.checks import Array, choose
+from flexbase.checks import choose
 from flexbase.errors import FlexbaseWarning, InputError, MissingExtra, nearest_name
 from flexbase.measures import MEASURES, Measure
-from flexbase.model.loop import HasGain
+from flexbase.model.loop import HasGain, loop_on
 from flexbase.model.mounted import MountedArm
-from flexbase.plant import Plant, Pose
+from flexbase.plant import Plant, Pose, check_plant
 from flexbase.study.montecarlo.collect import Progress, run_all, to_dataset
 from flexbase.study.montecarlo.criterion import USUAL, Criterion, read_criterion
 from flexbase.study.montecarlo.distribution import Distribution, read_distribution, written
@@ -71,6 +71,7 @@ def montecarlo(
     Raises InputError, MissingExtra.
     """
     plant = where.plant if isinstance(where, Pose) else where
+    check_plant(plant)
     known = parameters_of(plant.arm)
     if not vary:
         raise InputError(f"vary: nothing varies. Give a parameter's distribution; there are {', '.join(known)}.")
@@ -87,7 +88,7 @@ def montecarlo(
     check_measures(plant, measures, "montecarlo")
     arm, place = _place(where, over, shape, bounds, branch, axes, hold)
     draws = draw(distributions, known, samples, sampling, seed)
-    E = None if compensator is None else _gain(plant, compensator)
+    E = loop_on(plant.arm, compensator).E
     question = Question(
         arm, measures, place.varied, place.held, tuple(vary), E, place.planar, place.side, redesigned=redesign
     )
@@ -174,10 +175,3 @@ def _engine(wanted: str, question: Question, evaluations: int) -> Engine:
             raise
         warnings.warn(f"{missing} Until then it runs on NumPy, ten times slower.", FlexbaseWarning, stacklevel=3)
         return Engine(question)
-
-
-def _gain(plant: Plant, compensator: HasGain) -> Array:
-    E = np.asarray(compensator.E, dtype=float)
-    if E.shape != (plant.arm.n, plant.arm.n):
-        raise InputError(f"compensator: E has shape {E.shape}, but {plant.name} has {plant.arm.n} arm joints.")
-    return E

@@ -12,9 +12,9 @@ from flexbase.dynamics.inverse.posture_criteria import Criterion
 from flexbase.dynamics.inverse.starts import spread_starts
 from flexbase.errors import InputError
 from flexbase.measures import MEASURES, Measure
-from flexbase.model.loop import HasGain
+from flexbase.model.loop import HasGain, loop_on
 from flexbase.model.mounted import MountedArm
-from flexbase.plant import Plant
+from flexbase.plant import Plant, check_plant
 from flexbase.sweeps.engine.question import Question
 from flexbase.trace.kernel import Kernel, kernel_of
 
@@ -97,6 +97,7 @@ class Objective:
 
 def make_objective(plant: Plant, measure: str, compensator: HasGain | None) -> Objective:
     """The objective of a search, checked but for what the measure needs (`check_measures`). Raises InputError."""
+    check_plant(plant)
     arm = plant.arm
     chosen = choose("measure", measure, MEASURES)
     if chosen.slow or measure in REFUSED:
@@ -104,17 +105,7 @@ def make_objective(plant: Plant, measure: str, compensator: HasGain | None) -> O
         raise InputError(f"measure {measure}: {why}. Give one of {', '.join(climbable())}.")
     if chosen.per_mode and arm.m == 0:
         raise InputError(f"measure {measure}: {plant.name} has a rigid base, no mode. Give manipulability.")
-    return Objective(arm, chosen, gain_or_none(plant, compensator))
-
-
-def gain_or_none(plant: Plant, compensator: HasGain | None) -> Array | None:
-    """E of a compensator. Raises InputError where its size does not fit the arm."""
-    if compensator is None:
-        return None
-    E, n = np.asarray(compensator.E, dtype=float), plant.arm.n
-    if E.shape != (n, n):
-        raise InputError(f"compensator: E has shape {E.shape}, but {plant.name} has {n} arm joints.")
-    return E
+    return Objective(arm, chosen, loop_on(arm, compensator).E)
 
 
 def climbable() -> list[str]:

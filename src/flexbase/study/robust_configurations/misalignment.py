@@ -14,10 +14,9 @@ from flexbase.errors import InputError
 from flexbase.linear.reduced import misalignment
 from flexbase.measures import MEASURES
 from flexbase.model.digest import model_digest
-from flexbase.model.loop import HasGain
+from flexbase.model.loop import HasGain, loop_on
 from flexbase.model.mounted import MountedArm
 from flexbase.plant import Plant
-from flexbase.study.postures.objective import gain_or_none
 from flexbase.sweeps.caveats import check_measures
 from flexbase.sweeps.cells.parameters import configuration_of
 from flexbase.trace.algebra import Scalar, Vector, mul, norm, or_one, sub, unstack
@@ -84,7 +83,7 @@ def make_misalignment(plant: Plant, compensator: HasGain | None) -> Misalignment
             "positive, not on a line. Draw flexbase map."
         )
     check_measures(plant, (MEASURES["alignment"],), "rac")
-    return Misalignment(arm, gain_or_none(plant, compensator))
+    return Misalignment(arm, loop_on(arm, compensator).E)
 
 
 def tips_of(plant: Plant, joints: Array) -> Array:

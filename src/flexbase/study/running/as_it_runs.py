@@ -6,11 +6,13 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from flexbase.control.compensator import Compensator
-from flexbase.model.sensing import TYPICAL, Sensing, checked_sensing
+from flexbase.model.loop import Loop, loop_on
+from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
-from flexbase.plant import Pose
+from flexbase.plant import Pose, check_pose
 from flexbase.sampled.controller import pd_with_gain
-from flexbase.sampled.verdict import GOOD_MARGIN, HardwareVerdict, hardware_verdict
+from flexbase.sampled.judged import GOOD_MARGIN
+from flexbase.sampled.verdict import HardwareVerdict, hardware_verdict
 
 
 @dataclass(frozen=True)
@@ -27,7 +29,7 @@ class AsItRuns:
     @property
     def good(self) -> bool:
         """Stable, with both disk margins, on the changed robots too."""
-        return self.verdict.stable and self.verdict.has_margin and self.verdict.survives
+        return self.verdict.safe
 
     @property
     def statement(self) -> str:
@@ -35,8 +37,7 @@ class AsItRuns:
         found = self.verdict
         if not found.stable:
             return f"unstable as it runs: spectral radius {found.spectral_radius:.4f} a sample"
-        margin = min(found.disk_margin_torque, found.disk_margin_sensor)
-        size = f"disk margin {margin:.2f}" + ("" if found.has_margin else f", below {GOOD_MARGIN:g}")
+        size = f"disk margin {found.smaller_margin:.2f}" + ("" if found.has_margin else f", below {GOOD_MARGIN:g}")
         changed = "survives changes of the robot" if found.survives else f"fails with {', '.join(found.failed)}"
         return f"stable as it runs, {size}; {changed}"
 
@@ -63,10 +64,9 @@ def as_it_runs(
     sensing : if left out, as the project declares it, else 1 kHz with one sample of delay; gains : the project's own
     Raises InputError.
     """
-    used = pose.arm.gains if gains is None else gains
-    if used is None:
+    check_pose(pose)
+    loop = loop_on(pose.arm, Loop(compensator, gains, sensing))
+    if loop.given_gains is None:
         return None
-    declared = sensing or pose.arm.sensing
-    loop = checked_sensing(declared or TYPICAL, pose.arm.n)
-    controller = pd_with_gain(pose, loop, used, compensator.E, compensator.method)
-    return AsItRuns(hardware_verdict(controller), loop, declared is not None)
+    controller = pd_with_gain(pose, loop.sensing, loop.gains, loop.E, compensator.method)
+    return AsItRuns(hardware_verdict(controller), loop.sensing, loop.declared)

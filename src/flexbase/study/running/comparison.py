@@ -9,9 +9,10 @@ from typing import Any
 
 from flexbase.checks import choose
 from flexbase.errors import FlexbaseWarning, Infeasible, InputError, MissingExtra
-from flexbase.model.sensing import TYPICAL, Sensing
+from flexbase.model.loop import Loop, loop_on
+from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
-from flexbase.plant import Pose
+from flexbase.plant import Pose, check_pose
 from flexbase.sampled.verdict import HardwareVerdict, hardware_verdict
 from flexbase.synthesis import HARDWARE_METHODS, controller_for
 
@@ -58,13 +59,13 @@ def compare(
     names = list(HARDWARE_METHODS if methods is None else methods)
     for name in names:
         choose("method", name, HARDWARE_METHODS)
-    if pose.arm.gains is None and gains is None:
-        raise InputError(f"{pose.plant.name}: no task gains. Add a [control] table to the project, or give gains.")
-    used = sensing or pose.arm.sensing or TYPICAL
-    return Comparison(pose.plant.name, used, tuple(_contender(pose, name, used, gains) for name in names))
+    check_pose(pose)
+    loop = loop_on(pose.arm, Loop(gains=gains, sensing=sensing))
+    contenders = tuple(_contender(pose, name, loop.sensing, loop.gains) for name in names)
+    return Comparison(pose.plant.name, loop.sensing, contenders)
 
 
-def _contender(pose: Pose, name: str, sensing: Sensing, gains: Gains | None) -> Contender:
+def _contender(pose: Pose, name: str, sensing: Sensing, gains: Gains) -> Contender:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", FlexbaseWarning)  # of ideal designs; the verdict says it better

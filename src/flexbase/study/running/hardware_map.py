@@ -13,10 +13,12 @@ from flexbase.checks import Array, check_length, choose
 from flexbase.control.compensator import Compensator
 from flexbase.errors import FlexbaseError, InputError, SingularArm, Unreachable
 from flexbase.model.digest import model_digest
-from flexbase.model.sensing import TYPICAL, Sensing, checked_sensing
+from flexbase.model.loop import Loop, loop_on
+from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
-from flexbase.plant import Plant
+from flexbase.plant import Plant, check_plant
 from flexbase.sampled.controller import pd_with_gain
+from flexbase.sampled.figures import FIGURES
 from flexbase.sampled.verdict import hardware_verdict
 from flexbase.sweeps.cells.axis import block_shape, boxes, extent
 from flexbase.sweeps.cells.domain import Grid
@@ -29,16 +31,7 @@ from flexbase.sweeps.kept.recipe import VERSIONED
 from flexbase.sweeps.kept.store import FINISHED, Field, identity, open_store
 from flexbase.synthesis import HARDWARE_METHODS, controller_for
 
-MEASURES = {
-    "spectral_radius": ("1", "spectral radius of a sample: below 1 the loop settles"),
-    "disk_margin_torque": ("1", "disk margin with all torques perturbed; 0 if unstable"),
-    "disk_margin_sensor": ("1", "disk margin with all sensors perturbed; 0 if unstable"),
-    "worst_radius": ("1", "largest spectral radius over the changed robots"),
-    "tip_stiffness": ("N/m or N m/rad", "smallest static stiffness of the tip, where stable"),
-    "dynamic_stiffness": ("N/m or N m/rad", "the same at the frequency where a force moves the tip most"),
-    "tip_correction": ("1", "share of a constant tip error, unseen by the joints, that is taken away at rest"),
-    "time_constant_s": ("s", "of the slowest motion, where stable"),
-}
+MEASURES = {name: (one.unit, one.purpose) for name, one in FIGURES.items() if one.brief}
 STATUS = {
     OK: "ok",
     UNREACHABLE: "out of reach",
@@ -49,7 +42,7 @@ STATUS = {
 BLOCK = 50  # cells: what a process is given, and what an interruption costs at most
 
 
-class Loop(NamedTuple):
+class Asked(NamedTuple):
     """What is judged in every cell: a method that designs anew, or task PD with one E."""
 
     plant: Plant
@@ -171,15 +164,11 @@ def _loop(
     gains: Gains | None,
     compensator: Compensator | None,
     branch: str | None,
-) -> Loop:
+) -> Asked:
     choose("method", method, HARDWARE_METHODS)
-    used = plant.arm.gains if gains is None else gains
-    if used is None:
-        raise InputError(f"{plant.name}: no task gains. Add a [control] table to the project, or give gains.")
-    E = None if compensator is None else compensator.E
-    if E is not None and E.shape != (plant.arm.n, plant.arm.n):
-        raise InputError(f"compensator: E has shape {E.shape}, but {plant.name} has {plant.arm.n} arm joints.")
-    return Loop(plant, method, checked_sensing(sensing or plant.arm.sensing or TYPICAL, plant.arm.n), used, E, branch)
+    check_plant(plant)
+    loop = loop_on(plant.arm, Loop(compensator, gains, sensing))
+    return Asked(plant, method, loop.sensing, loop.gains, loop.E, branch)
 
 
 def _targets(plant: Plant, axes: Any, held: Sequence[float], box: Any) -> Array:
@@ -192,7 +181,7 @@ def _targets(plant: Plant, axes: Any, held: Sequence[float], box: Any) -> Array:
     return np.asarray(targets)
 
 
-def _verdicts(task: tuple[Loop, Array]) -> tuple[np.ndarray, Array]:
+def _verdicts(task: tuple[Asked, Array]) -> tuple[np.ndarray, Array]:
     """Status and measures of some tips, shape (tips,) and (tips, measures)."""
     loop, targets = task
     status, values = np.zeros(len(targets), dtype=np.int8), np.full((len(targets), len(MEASURES)), np.nan)
@@ -216,12 +205,12 @@ def _verdicts(task: tuple[Loop, Array]) -> tuple[np.ndarray, Array]:
             continue
         if not found.stable:
             status[i] = UNSTABLE
-        row = [getattr(found, name) for name in MEASURES]
+        row = [found.figures[name] for name in MEASURES]
         values[i] = [np.nan if value is None else float(f"{value:.9g}") for value in row]  # beyond are roundings
     return status, values
 
 
-def _recipe(loop: Loop, axes: dict[str, list[float]], held: list[float], block: list[int]) -> dict[str, Any]:
+def _recipe(loop: Asked, axes: dict[str, list[float]], held: list[float], block: list[int]) -> dict[str, Any]:
     from importlib.metadata import version
 
     return {

@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from flexbase.checks import choose
-from flexbase.errors import FlexbaseError, FlexbaseWarning, InputError
-from flexbase.linear.discrete.disk_margin import disk_margin
-from flexbase.model.sensing import TYPICAL, Sensing
-from flexbase.model.task import Gains
-from flexbase.plant import Plant, Pose
-from flexbase.sampled.closed import close_loop, dynamic_stiffness, sensitivities, tip_correction, tip_stiffness
-from flexbase.sampled.controller import SampledController
-from flexbase.sampled.plant import changed_pose, eight_changes
-from flexbase.sampled.verdict import GOOD_MARGIN
+from flexbase.errors import FlexbaseError, FlexbaseWarning
+from flexbase.model.loop import Loop, loop_on
+from flexbase.model.sensing import Sensing
+from flexbase.plant import Plant, Pose, check_plant
+from flexbase.sampled.figures import FIGURES
+from flexbase.sampled.judged import GOOD_MARGIN, judged
 from flexbase.study.montecarlo.interval import probability_interval
 from flexbase.study.workspace import random_poses
 from flexbase.sweeps.engine.pool import in_processes
 from flexbase.synthesis import HARDWARE_METHODS
+
+TOLD = tuple(name for name, one in FIGURES.items() if one.of_the_tip)
 
 
 class Setting(NamedTuple):
@@ -35,20 +34,19 @@ SETTINGS = tuple(Setting(*pair) for pair in ((1e3, 0.25), (1e3, 1.0), (1e3, 4.0)
 
 
 class Outcome(NamedTuple):
-    """One method at one pose: whether there is a design, what it bears, and what it does to the tip; NaN if unstable.
+    """One method at one pose: whether there is a design, what it bears, and what it does to the tip.
 
-    stiffness, dynamic, correction : `tip_stiffness`, `dynamic_stiffness`, `tip_correction`
-    time : constant of the slowest motion [s]
+    tip : figures that are tabulated, by name; empty if unstable
     """
 
     designed: bool
     stable: bool
     margin: bool
     perturbed: bool
-    stiffness: float = float("nan")
-    dynamic: float = float("nan")
-    correction: float = float("nan")
-    time: float = float("nan")
+    tip: dict[str, float | None]
+
+
+NO_DESIGN = Outcome(False, False, False, False, {})
 
 
 @dataclass(frozen=True)
@@ -57,9 +55,8 @@ class Row:
 
     margin_share : stable with both margins; perturbed_share : stable for the nominal and every changed robot
     complete_share : all three at once; no_design_share : poses where the method finds no controller
-    tip_stiffness : median of the smallest static stiffness where stable [N/m]; None where it never is
-    dynamic_stiffness, tip_correction, time_constant_s : medians too: smallest stiffness at any frequency; share of a
-        tip error, unseen by the joints, that is taken away at rest; of the slowest motion
+    medians : of the figures that tell what the loop does to the tip, over the poses where it is stable; None where it
+        never is
     *_interval : 95 % intervals, exact
     """
 
@@ -72,14 +69,16 @@ class Row:
     perturbed_share: float
     complete_share: float
     no_design_share: float
-    tip_stiffness: float | None
-    dynamic_stiffness: float | None
-    tip_correction: float | None
-    time_constant_s: float | None
+    medians: dict[str, float | None]
     stable_interval: tuple[float, float]
     margin_interval: tuple[float, float]
     perturbed_interval: tuple[float, float]
     complete_interval: tuple[float, float]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain numbers, the medians under the figures' names."""
+        said = {name: value for name, value in vars(self).items() if name != "medians"}
+        return {**said, **self.medians}
 
 
 @dataclass(frozen=True)
@@ -92,7 +91,7 @@ class HardwareStudy:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain numbers."""
-        return {"robot": self.robot, "seed": self.seed, "rows": [dict(vars(row)) for row in self.rows]}
+        return {"robot": self.robot, "seed": self.seed, "rows": [row.to_dict() for row in self.rows]}
 
     def summary(self) -> str:
         """A line a row: stable / margin / perturbed / all three in percent."""
@@ -102,7 +101,8 @@ class HardwareStudy:
         for row in self.rows:
             shares = (row.stable_share, row.margin_share, row.perturbed_share, row.complete_share)
             shown = " / ".join(f"{100.0 * share:3.0f}" for share in shares)
-            stiff = "none" if row.tip_stiffness is None else f"{row.tip_stiffness:.2e}"
+            stiffness = row.medians["tip_stiffness"]
+            stiff = "none" if stiffness is None else f"{stiffness:.2e}"
             lines.append(f"  {row.method:12s} {row.rate_hz:6.0f} Hz x{row.gain_scale:<5g} {shown}  {stiff}")
         return "\n".join(lines)
 
@@ -114,7 +114,7 @@ def hardware_study(
     seed: int = 0,
     methods: Sequence[str] | None = None,
     settings: Sequence[Setting] = SETTINGS,
-    sensing: Sensing = TYPICAL,
+    sensing: Sensing | None = None,
     workers: int | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> HardwareStudy:
@@ -123,16 +123,17 @@ def hardware_study(
     The poses are the tips that `random_poses` draws uniformly over the workspace. A method without a design at a pose
     counts as unstable there.
 
-    sensing : delays and sensors; its rate is replaced by the setting's
+    sensing : delays and sensors, the project's own if left out; its rate is replaced by the setting's
     Raises InputError.
     """
     chosen = list(HARDWARE_METHODS) if methods is None else list(methods)
     for name in chosen:
         choose("method", name, HARDWARE_METHODS)
-    if plant.arm.gains is None:
-        raise InputError(f"{plant.name}: no task gains. Add a [control] table to the project.")
+    check_plant(plant)
+    loop = loop_on(plant.arm, Loop(sensing=sensing))
+    _ = loop.gains  # raises where there are none
     drawn = random_poses(plant, poses, seed)
-    tasks = [(pose, name, settings, sensing) for pose in drawn for name in chosen]
+    tasks = [(pose, name, settings, loop.sensing) for pose in drawn for name in chosen]
     found: dict[tuple[str, Setting], list[Outcome]] = {(name, one): [] for name in chosen for one in settings}
     for done, (_, (name, outcomes)) in enumerate(in_processes(outcomes_of, tasks, workers), start=1):
         for setting, outcome in zip(settings, outcomes, strict=True):
@@ -153,36 +154,14 @@ def outcomes_of(task: Task) -> tuple[str, list[Outcome]]:
 
 
 def _outcome(pose: Pose, name: str, setting: Setting, sensing: Sensing) -> Outcome:
-    gains = pose.arm.gains
-    assert gains is not None  # checked by the study
-    scaled = Gains(setting.scale * gains.stiffness, np.sqrt(setting.scale) * gains.damping)
-    at_rate = Sensing(**{**vars(sensing), "rate": setting.rate})
+    gains = loop_on(pose.arm).scaled(setting.scale)
     try:
-        controller = HARDWARE_METHODS[name].make(pose, at_rate, scaled)
+        controller = HARDWARE_METHODS[name].make(pose, replace(sensing, rate=setting.rate), gains)
     except (FlexbaseError, FlexbaseWarning, np.linalg.LinAlgError):
-        return Outcome(False, False, False, False)
-    return judge(pose, controller)
-
-
-def judge(pose: Pose, controller: SampledController) -> Outcome:
-    """Stability, disk margins, changed robots, the tip: the verdict without its slower parts."""
-    radius = close_loop(pose, controller).radius
-    if radius >= 1.0:
-        return Outcome(True, False, False, False)
-    margin = min(disk_margin(one).alpha for one in sensitivities(pose, controller))
-    perturbed = all(
-        close_loop(changed_pose(pose, change), controller).radius < 1.0 for change in eight_changes(pose.arm.n)
-    )
-    return Outcome(
-        designed=True,
-        stable=True,
-        margin=margin >= GOOD_MARGIN,
-        perturbed=perturbed,
-        stiffness=tip_stiffness(pose, controller),
-        dynamic=dynamic_stiffness(pose, controller),
-        correction=tip_correction(pose, controller),
-        time=-controller.sensing.step / float(np.log(radius)),
-    )
+        return NO_DESIGN
+    found = judged(controller, pose)
+    tip = {one: found.figure(one) for one in TOLD} if found.stable else {}
+    return Outcome(True, found.stable, found.stable and found.has_margin(), found.survives, tip)
 
 
 def _row(name: str, setting: Setting, outcomes: Sequence[Outcome]) -> Row:
@@ -202,10 +181,7 @@ def _row(name: str, setting: Setting, outcomes: Sequence[Outcome]) -> Row:
         float(np.mean(perturbed)),
         float(np.mean(complete)),
         float(np.mean([not one.designed for one in outcomes])),
-        _median([one.stiffness for one in settling]),
-        _median([one.dynamic for one in settling]),
-        _median([one.correction for one in settling]),
-        _median([one.time for one in settling]),
+        {told: _median([one.tip[told] for one in settling]) for told in TOLD},
         share_interval(sum(stable), count),
         share_interval(sum(margin), count),
         share_interval(sum(perturbed), count),
@@ -213,8 +189,9 @@ def _row(name: str, setting: Setting, outcomes: Sequence[Outcome]) -> Row:
     )
 
 
-def _median(values: Sequence[float]) -> float | None:
-    return float(np.median(values)) if values else None
+def _median(values: Sequence[float | None]) -> float | None:
+    known = [value for value in values if value is not None]
+    return float(np.median(known)) if known else None
 
 
 def share_interval(hits: int, trials: int) -> tuple[float, float]:

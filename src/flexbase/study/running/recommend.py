@@ -8,16 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from flexbase.errors import FlexbaseError, InputError
+from flexbase.errors import FlexbaseError
 from flexbase.linear.modal import modes
-from flexbase.model.sensing import TYPICAL, Sensing
+from flexbase.model.loop import Loop, loop_on
+from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
-from flexbase.plant import Pose
-from flexbase.sampled.closed import close_loop
+from flexbase.plant import Pose, check_pose
+from flexbase.sampled.changes import Changed
 from flexbase.sampled.controller import SampledController
+from flexbase.sampled.judged import GOOD_MARGIN, SAFE, STABLE, UNSTABLE, Judged, robots_at
 from flexbase.sampled.noise import torque_noise
-from flexbase.sampled.plant import Changed, changed_pose
-from flexbase.sampled.verdict import GOOD_MARGIN, HardwareVerdict, hardware_verdict
+from flexbase.sampled.verdict import HardwareVerdict, hardware_verdict
 from flexbase.sweeps.engine.pool import in_processes
 from flexbase.synthesis import HARDWARE_METHODS, controller_for
 
@@ -46,12 +47,15 @@ class Candidate:
     stiffness_error: float | None = None
     sensors: tuple[str, ...] = ()
 
+    def to_dict(self) -> dict[str, Any]:
+        """Plain numbers."""
+        verdict = None if self.verdict is None else self.verdict.to_dict()
+        return {**vars(self), "verdict": verdict, "sensors": list(self.sensors), "grade": self.grade}
+
     @property
     def grade(self) -> int:
         """3: stable, with margins, for all changed robots; 2: with margins or for all of them; 1: stable; 0: not."""
-        if self.verdict is None or not self.verdict.stable:
-            return 0
-        return 1 + int(self.verdict.has_margin) + int(self.verdict.survives)
+        return UNSTABLE if self.verdict is None else self.verdict.grade
 
 
 @dataclass(frozen=True)
@@ -81,7 +85,7 @@ class Recommendation:
             "positive_real": self.positive_real,
             "recommended": None if self.best is None else self.best.method,
             "grade": 0 if self.best is None else self.best.grade,
-            "candidates": [asdict(one) | {"grade": one.grade} for one in self.candidates],
+            "candidates": [one.to_dict() for one in self.candidates],
             "changes": self.changes,
             "lines": self.lines(),
         }
@@ -102,7 +106,7 @@ class Recommendation:
         verdict, best = self.best.verdict, self.best
         others = [one for one in self.candidates if one is not best]
         return [
-            f"{'Use' if best.grade == 3 else 'Use with care'}: {best.method}, {best.purpose} ({clock}, {said}).",
+            f"{'Use' if best.grade == SAFE else 'Use with care'}: {best.method}, {best.purpose} ({clock}, {said}).",
             f"Why: {_merit(best)}; disk margins {verdict.disk_margin_torque:.2f} at torques, "
             f"{verdict.disk_margin_sensor:.2f} at sensors. " + _comparison(best, others),
             f"Cost: tip stiffness {verdict.tip_stiffness:.3g} N/m at rest, {verdict.dynamic_stiffness:.2g} N/m at its"
@@ -145,10 +149,9 @@ def recommend(
     workers : processes, None for one a core; a script that asks for several needs its `__main__` guard
     Raises InputError without task gains.
     """
-    declared = sensing is not None or pose.arm.sensing is not None
-    used = sensing or pose.arm.sensing or TYPICAL
-    if gains is None and pose.arm.gains is None:
-        raise InputError(f"{pose.plant.name}: no task gains. Add a [control] table to the project, or give gains.")
+    check_pose(pose)
+    loop = loop_on(pose.arm, Loop(gains=gains, sensing=sensing))
+    used, gains = loop.sensing, loop.gains
     chosen = list(HARDWARE_METHODS) if methods is None else list(methods)
     others = [(f"{rate:g} Hz", replace(used, rate=rate)) for rate in RATES if rate != used.rate]
     sensors = [("accelerometer", "joint accelerometers"), ("encoders", "differenced encoders")]
@@ -168,7 +171,7 @@ def recommend(
     }
     ideal = modes(pose).positive_real
     tip = tuple(map(float, pose.tip))
-    return Recommendation(pose.plant.name, tip, used, declared, ideal, best, tuple(tables[0]), changes)
+    return Recommendation(pose.plant.name, tip, used, loop.declared, ideal, best, tuple(tables[0]), changes)
 
 
 def choose_best(candidates: Sequence[Candidate]) -> Candidate | None:
@@ -178,11 +181,11 @@ def choose_best(candidates: Sequence[Candidate]) -> Candidate | None:
     where no other has its grade.
     """
     grade = max((one.grade for one in candidates), default=0)
-    if grade == 0:
+    if grade == UNSTABLE:
         return None
     first = [one for one in candidates if one.grade == grade]
     first = [one for one in first if _correction(one) >= HEARS] or first
-    if grade == 1:
+    if grade == STABLE:
         return max(first, key=lambda one: _smaller_margin(one))
     stiffest = max(_stiffness(one) for one in first)
     return next(one for one in first if _stiffness(one) >= CLOSE * stiffest)
@@ -197,7 +200,7 @@ def _correction(one: Candidate) -> float:
 
 
 def _smaller_margin(one: Candidate) -> float:
-    return 0.0 if one.verdict is None else min(one.verdict.disk_margin_torque, one.verdict.disk_margin_sensor)
+    return 0.0 if one.verdict is None else one.verdict.smaller_margin
 
 
 def _candidate(task: Task) -> Candidate:
@@ -219,7 +222,7 @@ def _stiffness_error(pose: Pose, controller: SampledController) -> float | None:
     survived = None
     for error in ERRORS:
         changes = [Changed("", base_stiffness=1.0 + sign * error) for sign in (-1.0, 1.0)]
-        if any(close_loop(changed_pose(pose, change), controller).radius >= 1.0 for change in changes):
+        if not Judged(controller, robots_at(pose, controller.sensing, changes)).survives:
             break
         survived = error
     return survived
@@ -243,7 +246,7 @@ def _flaw(one: Candidate) -> str:
         return f"no design ({one.refusal})"
     if not one.verdict.stable:
         return "unstable"
-    if one.grade == 3:
+    if one.grade == SAFE:
         return f"runs too, at {one.verdict.dynamic_stiffness:.2g} N/m"
     if not one.verdict.survives:
         return f"fails with {one.verdict.worst_change}"

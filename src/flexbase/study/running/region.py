@@ -11,16 +11,14 @@ from numpy.typing import NDArray
 
 from flexbase.checks import Array, check_length, positive_number
 from flexbase.errors import InputError, SingularArm, Unreachable
-from flexbase.linear.discrete.disk_margin import disk_margin
+from flexbase.model.loop import Loop, loop_on
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import BRANCHES, Gains
 from flexbase.plant import Pose
-from flexbase.sampled.closed import close_loop, sensitivities
 from flexbase.sampled.controller import SampledController, pd_with_gain
-from flexbase.sampled.plant import changed_pose, eight_changes
-from flexbase.sampled.verdict import GOOD_MARGIN
+from flexbase.sampled.judged import judged
 from flexbase.sweeps.engine.pool import in_processes
-from flexbase.synthesis import controller_for
+from flexbase.synthesis import HARDWARE_METHODS, controller_for
 
 OUT_OF_REACH, UNSTABLE, STABLE, SAFE = range(4)
 MEANINGS = {
@@ -135,13 +133,10 @@ def _grade(cell: _Cell) -> int:
     controller = cell.controller
     if cell.gains is not None:
         controller = pd_with_gain(there, controller.sensing, cell.gains, controller.E, controller.name)
-    if close_loop(there, controller).radius >= 1.0:
+    found = judged(controller, there)
+    if not found.stable:
         return UNSTABLE
-    changed = (changed_pose(there, change) for change in eight_changes(there.arm.n))
-    if any(close_loop(one, controller).radius >= 1.0 for one in changed):
-        return STABLE
-    margins = (disk_margin(side).alpha for side in sensitivities(there, controller))
-    return SAFE if all(margin >= GOOD_MARGIN for margin in margins) else STABLE
+    return SAFE if found.accepted() else STABLE
 
 
 def _branch(pose: Pose) -> str:
@@ -180,8 +175,6 @@ def region_of(
     Raises InputError, Infeasible.
     """
     controller = controller_for(pose, method, sensing, gains)
-    used = pose.arm.gains if gains is None else gains
-    scaled = {"stiffness_scale", "scale"} & set(controller.notes)
-    plain = controller.E is not None and (not scaled or method == "sampled")
-    kept = used if plain or method == "none" else None
+    follows = HARDWARE_METHODS[method].law == "gains"
+    kept = loop_on(pose.arm, Loop(gains=gains)).gains if follows else None
     return validity(controller, kept, half_width=half_width, shape=shape, progress=progress)

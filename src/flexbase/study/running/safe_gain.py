@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 
+from flexbase.checks import choose
 from flexbase.errors import FlexbaseError, InputError
-from flexbase.linear.discrete.disk_margin import disk_margin
-from flexbase.model.sensing import TYPICAL, Sensing, checked_sensing
+from flexbase.model.loop import Loop, loop_on
+from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
-from flexbase.plant import Pose
-from flexbase.sampled.closed import close_loop, sensitivities, tip_stiffness
-from flexbase.sampled.controller import SampledController
-from flexbase.sampled.plant import changed_pose, eight_changes
-from flexbase.sampled.verdict import GOOD_MARGIN
-from flexbase.synthesis import controller_for
+from flexbase.plant import Pose, check_pose
+from flexbase.sampled.judged import Judged, Robots, robots_at
+from flexbase.synthesis import HARDWARE_METHODS, controller_for
 
 SMALLEST, LARGEST, LOOKS = 1e-3, 1e2, 11  # scales looked at first: a factor of about 3 apart
 HALVINGS = 5  # of the last factor: to 4 %
-AS_GIVEN: dict[str, dict[str, Any]] = {"constant": {"scales": (1.0,), "most": 50}, "sampled": {"most": 40}}
-UNSTABLE, STABLE, SAFE = range(3)
 
 
 @dataclass(frozen=True)
@@ -57,30 +54,32 @@ def safe_gain(pose: Pose, method: str = "none", sensing: Sensing | None = None, 
     Looked for on a grid from the top down, then bisected between the first that does and its neighbour above.
     Raises InputError.
     """
-    used = pose.arm.gains if gains is None else gains
-    if used is None:
-        raise InputError(f"{pose.plant.name}: no task gains. Add a [control] table to the project, or give gains.")
-    loop = checked_sensing(sensing or pose.arm.sensing or TYPICAL, pose.arm.n)
-    changed = [changed_pose(pose, change) for change in eight_changes(pose.arm.n)]
-    known: dict[float, tuple[int, SampledController | None]] = {}
+    check_pose(pose)
+    loop = loop_on(pose.arm, Loop(gains=gains, sensing=sensing))
+    robots = robots_at(pose, loop.sensing)
+    known: dict[float, Judged | None] = {}
 
-    def grade(scale: float) -> int:
+    def at(scale: float) -> Judged | None:
         if scale not in known:
-            scaled = Gains(scale * used.stiffness, np.sqrt(scale) * used.damping)
-            known[scale] = _graded(pose, method, loop, scaled, changed)
-        return known[scale][0]
+            known[scale] = _judged(robots, method, loop.scaled(scale))
+        return known[scale]
+
+    def is_stable(scale: float) -> bool:
+        return (found := at(scale)) is not None and found.stable
+
+    def is_safe(scale: float) -> bool:
+        return (found := at(scale)) is not None and found.accepted()
 
     scales = np.geomspace(SMALLEST, LARGEST, LOOKS).tolist()
-    stable = _highest(scales, lambda scale: grade(scale) >= STABLE)
-    safe = _highest(scales, lambda scale: grade(scale) == SAFE)
-    if safe is None:
+    stable, safe = _highest(scales, is_stable), _highest(scales, is_safe)
+    best = None if safe is None else at(safe)
+    if safe is None or best is None:
         return SafeGain(method, None, stable, None, False)
-    controller = known[safe][1]
-    holes = any(grade_ < SAFE for scale, (grade_, _) in known.items() if scale < safe)
-    return SafeGain(method, safe, stable, None if controller is None else tip_stiffness(pose, controller), holes)
+    holes = any(not is_safe(scale) for scale in list(known) if scale < safe)
+    return SafeGain(method, safe, stable, best.figure("tip_stiffness"), holes)
 
 
-def _highest(scales: list[float], does: Any) -> float | None:
+def _highest(scales: list[float], does: Callable[[float], bool]) -> float | None:
     above = None
     for scale in reversed(scales):
         if does(scale):
@@ -95,18 +94,12 @@ def _highest(scales: list[float], does: Any) -> float | None:
     return float(low)
 
 
-def _graded(
-    pose: Pose, method: str, sensing: Sensing, gains: Gains, changed: list[Pose]
-) -> tuple[int, SampledController | None]:
+def _judged(robots: Robots, method: str, gains: Gains) -> Judged | None:
+    """The method's controller, judged; None where it has none."""
     try:
-        controller = controller_for(pose, method, sensing, gains, **AS_GIVEN.get(method, {}))
+        as_given = choose("method", method, HARDWARE_METHODS).as_given
+        return Judged(controller_for(robots.pose, method, robots.sensing, gains, **as_given), robots)
     except InputError:
         raise
     except (FlexbaseError, np.linalg.LinAlgError):
-        return UNSTABLE, None
-    if close_loop(pose, controller).radius >= 1.0:
-        return UNSTABLE, controller
-    held = all(close_loop(one, controller).radius < 1.0 for one in changed)
-    if not held or min(disk_margin(side).alpha for side in sensitivities(pose, controller)) < GOOD_MARGIN:
-        return STABLE, controller
-    return SAFE, controller
+        return None

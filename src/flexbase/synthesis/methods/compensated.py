@@ -19,25 +19,27 @@ from flexbase.synthesis.registry import hardware_method
 FASTER = 100.0  # rad/s above the present frequency: the target of the paper's Fig. 10
 
 
-@hardware_method("none", "task PD alone")
+@hardware_method("none", "task PD alone", law="gains")
 def none(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
     """Task PD with the tip error differenced."""
     return pd_with_gain(pose, sensing, gains, None, "none")
 
 
-@hardware_method("recursion", "the paper's 800 iterations on measured accelerations")
+@hardware_method("recursion", "the paper's 800 iterations on measured accelerations", law="gains")
 def recursion(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
     """Task PD with the recursion's E. Raises Infeasible where it does not converge."""
     return pd_with_gain(pose, sensing, gains, _recursion_gain(pose), "recursion")
 
 
-@hardware_method("exact", "the exact least gain on measured accelerations")
+@hardware_method("exact", "the exact least gain on measured accelerations", law="gains")
 def exact_gain(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
     """Task PD with the exact E at a frequency 100 rad/s up. Raises Infeasible where there is none."""
     return pd_with_gain(pose, sensing, gains, _exact_gain(pose), "exact")
 
 
-@hardware_method("convex", "the convex design's gain on measured accelerations, for any number of base joints")
+@hardware_method(
+    "convex", "the convex design's gain on measured accelerations, for any number of base joints", law="gains"
+)
 def convex_gain(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
     """Task PD with the E of `convex`. Raises Infeasible where there is none."""
     return pd_with_gain(pose, sensing, gains, _convex_gain(pose), "convex")

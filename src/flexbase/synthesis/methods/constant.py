@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
 from flexbase.sampled.controller import SampledController
-from flexbase.sampled.verdict import GOOD_MARGIN, HardwareVerdict, hardware_verdict
+from flexbase.sampled.judged import GOOD_MARGIN, judged
 from flexbase.synthesis.methods.sampled import MATRICES, SampledProblem
 from flexbase.synthesis.registry import hardware_method
 from flexbase.synthesis.search.minimax import Found, descend
@@ -22,7 +23,11 @@ FIRST_FREE = ("E", "damping", "joint-damping")
 ALL = (*FIRST_FREE, MATRICES)
 
 
-@hardware_method("constant", "constant gain matrices made for the sampled loop: no states but filters")
+@hardware_method(
+    "constant",
+    "constant gain matrices made for the sampled loop: no states but filters",
+    as_given={"scales": (1.0,), "most": 50},
+)
 def constant(
     pose: Pose,
     sensing: Sensing,
@@ -48,20 +53,16 @@ def constant(
     last: Array | None = None
     for scale in scales:
         controller, last = _at(pose, sensing, gains, scale, most, last)
-        verdict = hardware_verdict(controller, brief=True)
-        tightest = min(verdict.disk_margin_torque, verdict.disk_margin_sensor)
-        controller.notes["accepted"] = _accepted(verdict, margin)
+        found = judged(controller)
+        controller.notes["accepted"] = found.accepted(margin)
+        controller = replace(controller, judged=found)
         if controller.notes["accepted"]:
             return controller
-        if verdict.stable and (best is None or tightest > best[0]):
-            best = tightest, controller
+        if found.stable and (best is None or min(found.margins) > best[0]):
+            best = min(found.margins), controller
     if best is None:
         raise Infeasible(f"{pose.plant.name}: no constant gains were found that hold this pose. Ask for a softer loop.")
     return best[1]
-
-
-def _accepted(verdict: HardwareVerdict, margin: float) -> bool:
-    return verdict.survives and min(verdict.disk_margin_torque, verdict.disk_margin_sensor) >= margin
 
 
 def _at(

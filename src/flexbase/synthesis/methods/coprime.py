@@ -12,11 +12,10 @@ from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
 from flexbase.sampled.controller import SampledController
-from flexbase.sampled.verdict import GOOD_MARGIN
+from flexbase.sampled.judged import GOOD_MARGIN, Judged, robots_at
 from flexbase.synthesis.registry import hardware_method
 from flexbase.synthesis.search.shaping import design_plant, task_shape
 from flexbase.synthesis.search.stiffest import best_of, stiffest
-from flexbase.synthesis.search.trial import Trial, robots_at
 
 JOINT_WEIGHTS = (0.0, 0.5)
 FACTOR = 1.1
@@ -43,17 +42,17 @@ def coprime(
     Raises Infeasible where no controller exists at all, or the asked order is not among 1 to the full order.
     """
     robots = robots_at(pose, sensing)
-    found: list[Trial] = []
+    found: list[Judged] = []
     for weight in JOINT_WEIGHTS:
 
-        def attempt(size: float, weight: float = weight) -> Trial | None:
+        def attempt(size: float, weight: float = weight) -> Judged | None:
             try:
-                return Trial(coprime_at(pose, sensing, gains, size, weight, order=order), robots)
+                return Judged(coprime_at(pose, sensing, gains, size, weight, order=order), robots)
             except np.linalg.LinAlgError:
                 return None
 
         found += stiffest(attempt, margin) if scale is None else [one for one in [attempt(scale)] if one is not None]
-    return best_of(found, margin, pose).controller
+    return best_of(found, margin, pose)
 
 
 def coprime_at(

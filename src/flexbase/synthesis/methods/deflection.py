@@ -22,12 +22,11 @@ from flexbase.model.task import Gains
 from flexbase.plant import Pose
 from flexbase.sampled.closed import plant_at_one_rate, plants_in_a_period
 from flexbase.sampled.controller import SampledController, pd_with_gain
-from flexbase.sampled.verdict import GOOD_MARGIN
+from flexbase.sampled.judged import GOOD_MARGIN, Judged, robots_at
 from flexbase.synthesis.methods.sampled import landscape
 from flexbase.synthesis.registry import hardware_method
 from flexbase.synthesis.search.minimax import Landscape, descend
 from flexbase.synthesis.search.stiffest import best_of
-from flexbase.synthesis.search.trial import Trial, robots_at
 
 SEEN = 1e-6  # smallest to largest singular value of Jp, below which the tip does not tell the base's deflection
 SHARE = 0.4  # of the ideal design, where the second descent starts
@@ -59,8 +58,8 @@ def deflection(pose: Pose, sensing: Sensing, gains: Gains, *, E: Array | None = 
         check_symmetric("E", given, "kg m^2 or kg")
         tried = [given]
     robots = robots_at(pose, sensing)
-    found = [Trial(with_deflection(pose, sensing, gains, one), robots) for one in tried]
-    return best_of(found, GOOD_MARGIN, pose).controller
+    found = [Judged(with_deflection(pose, sensing, gains, one), robots) for one in tried]
+    return best_of(found, GOOD_MARGIN, pose)
 
 
 def with_deflection(pose: Pose, sensing: Sensing, gains: Gains, E: Array) -> SampledController:

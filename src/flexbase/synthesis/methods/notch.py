@@ -11,10 +11,9 @@ from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
 from flexbase.sampled.controller import SampledController, task_pd
-from flexbase.sampled.verdict import GOOD_MARGIN
+from flexbase.sampled.judged import GOOD_MARGIN, Judged, robots_at
 from flexbase.synthesis.registry import hardware_method
 from flexbase.synthesis.search.stiffest import best_of
-from flexbase.synthesis.search.trial import Trial, robots_at
 
 WIDTHS = (0.1, 0.2, 0.4, 0.7, 1.0, 1.5)  # damping ratio of the notch's poles
 DEPTH = 0.1  # gain that is left at the mode's frequency
@@ -38,8 +37,8 @@ def notch(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
             one = series(one, notch_filter(frequency, width, sensing.step))
         seen = side_by_side(*[one] * k, static(np.eye(2 * n), sensing.step))
         notes = {"width": width, "frequencies_rad_s": frequencies}
-        tried.append(Trial(SampledController("notch", pose, sensing, series(seen, law), None, notes), robots))
-    return best_of(tried, GOOD_MARGIN, pose).controller
+        tried.append(Judged(SampledController("notch", pose, sensing, series(seen, law), None, notes), robots))
+    return best_of(tried, GOOD_MARGIN, pose)
 
 
 def notch_filter(frequency: float, width: float, step: float) -> Discrete:

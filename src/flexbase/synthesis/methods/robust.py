@@ -20,14 +20,13 @@ from flexbase.linear.discrete.system import Discrete
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
+from flexbase.sampled.changes import Changed, changed_pose
 from flexbase.sampled.controller import SampledController
-from flexbase.sampled.plant import Changed, changed_pose
-from flexbase.sampled.verdict import GOOD_MARGIN
+from flexbase.sampled.judged import GOOD_MARGIN, Judged, Robots, robots_at
 from flexbase.synthesis.registry import hardware_method
 from flexbase.synthesis.search.servo import Slow, joint_servo
 from flexbase.synthesis.search.shaping import Weight, design_plant, task_shape
 from flexbase.synthesis.search.stiffest import best_of, stiffest
-from flexbase.synthesis.search.trial import Robots, Trial, robots_at
 
 
 class Stage(NamedTuple):
@@ -78,14 +77,14 @@ def robust(
     """
     robots = robots_at(pose, sensing)
     asked = float(np.linalg.eigvalsh(gains.stiffness)[0])
-    found: list[Trial] = []
+    found: list[Judged] = []
 
     @cache
     def model(base: float) -> tuple[Pose, Discrete]:
         there = changed_pose(pose, Changed("design", base_stiffness=base))
         return there, design_plant(there, sensing)
 
-    def shaped(scale: float, weight: Weight, base: float, joints: float) -> Trial | None:
+    def shaped(scale: float, weight: Weight, base: float, joints: float) -> Judged | None:
         there, plant = model(base)
         shape = task_shape(there, gains, scale, joints, weight.sampled(sensing.step))
         try:
@@ -103,23 +102,23 @@ def robust(
             found += stiffest(attempt, margin, halvings=HALVINGS, softest=_reached(found, margin))
         if (stiff := _reached(found, margin)) > 0.0 and stiff >= enough * asked:
             break
-    return best_of(_correcting(found, margin) or found, margin, pose).controller
+    return best_of(_correcting(found, margin) or found, margin, pose)
 
 
-def _correcting(found: Sequence[Trial], margin: float) -> list[Trial]:
+def _correcting(found: Sequence[Judged], margin: float) -> list[Judged]:
     """Those that seem accepted and take away half of a tip error: less is hardly a loop of the tip."""
     return [one for one in found if one.seems_accepted(margin) and one.correction >= HALF]
 
 
-def _reached(found: Sequence[Trial], margin: float) -> float:
+def _reached(found: Sequence[Judged], margin: float) -> float:
     """Stiffness of the tip, of the stiffest that seems accepted and corrects it; 0 if none does."""
     return max((one.stiffness for one in _correcting(found, margin)), default=0.0)
 
 
-def _servos(robots: Robots, gains: Gains, margin: float, weight: Weight, slow: Slow | None) -> list[Trial]:
+def _servos(robots: Robots, gains: Gains, margin: float, weight: Weight, slow: Slow | None) -> list[Judged]:
     """Servos of one weight, down to the first that is accepted."""
     pose, sensing = robots.pose, robots.sensing
-    tried: list[Trial] = []
+    tried: list[Judged] = []
     for scale in SIZES:
         try:
             system, b_opt = joint_servo(pose, sensing, gains, scale, weight.sampled(sensing.step), slow)
@@ -132,7 +131,7 @@ def _servos(robots: Robots, gains: Gains, margin: float, weight: Weight, slow: S
     return tried
 
 
-def _trial(robots: Robots, system: Discrete, weight: Weight, notes: dict[str, float]) -> Trial:
+def _trial(robots: Robots, system: Discrete, weight: Weight, notes: dict[str, float]) -> Judged:
     """The notes of a shape have its joint weight and base; a servo's do not."""
     told = {**notes, "ratio": weight.ratio, "turn_rad_s": weight.turn, "lead": weight.lead}
-    return Trial(SampledController("robust", robots.pose, robots.sensing, system, None, told), robots)
+    return Judged(SampledController("robust", robots.pose, robots.sensing, system, None, told), robots)

@@ -41,7 +41,12 @@ HIGHEST = 3.0  # factor on a gain, less one; joint damping in its unit
 JOINT_DAMPING = 100.0  # 1/s: unit of joint damping, times Ms
 
 
-@hardware_method("sampled", "an E made for the sampled loop itself; 4 kHz and more, or soft gains")
+@hardware_method(
+    "sampled",
+    "an E made for the sampled loop itself; 4 kHz and more, or soft gains",
+    as_given={"most": 40},
+    law="gains",
+)
 def sampled(
     pose: Pose,
     sensing: Sensing,

@@ -8,10 +8,9 @@ from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
 from flexbase.sampled.controller import SampledController, pd_with_gain
-from flexbase.sampled.verdict import GOOD_MARGIN
+from flexbase.sampled.judged import GOOD_MARGIN, Judged, robots_at
 from flexbase.synthesis.registry import hardware_method
 from flexbase.synthesis.search.stiffest import best_of
-from flexbase.synthesis.search.trial import Trial, robots_at
 
 RATES = np.concatenate([[0.0], np.geomspace(3.0, 1000.0, 11)])  # damping over each joint's own inertia [1/s]
 
@@ -25,5 +24,5 @@ def viscous(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
     for rate in RATES:
         made = pd_with_gain(pose, sensing, gains, None, "viscous", rate * inertia)
         made.notes["damping_per_inertia"] = float(rate)
-        tried.append(Trial(made, robots))
-    return best_of(tried, GOOD_MARGIN, pose).controller
+        tried.append(Judged(made, robots))
+    return best_of(tried, GOOD_MARGIN, pose)
