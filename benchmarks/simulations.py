@@ -131,10 +131,10 @@ def simulate_many_vs_simulate() -> list[Ratio]:
     starts = centre + np.random.default_rng(0).uniform(-0.1, 0.1, (RUNS, 2))
 
     def many(compensator: fb.Compensator | None = gain) -> np.ndarray:
-        return fb.simulate_many(paper, starts, goal, compensator, threads=1).q
+        return fb.simulate_many(paper, starts, goal, compensator, move=fb.Moves(threads=1)).q
 
     def one() -> np.ndarray:
-        return fb.simulate(paper, paper.at(starts[0]), goal, gain, interval=1e-2).q[-1]
+        return fb.simulate(paper, paper.at(starts[0]), goal, gain, move=fb.Move(interval=1e-2)).q[-1]
 
     if not _same(many()[0], one()):
         raise SystemExit("control failed: simulate_many and simulate end elsewhere")

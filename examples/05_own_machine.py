@@ -22,5 +22,5 @@ for caution in caught:
 start = plant.at_tip([0.5, 0.4, 0.3])
 print()
 for used in (None, compensator):
-    run = fb.simulate(plant, start, goal, used, switch=0.15, end=0.4)
+    run = fb.simulate(plant, start, goal, used, move=fb.Move(switch=0.15, end=0.4))
     print(run.summary())

@@ -18,7 +18,8 @@ print(f"algebraic-loop radius {facts.algebraic_loop_radius:.3f}, rightmost pole 
 
 print()
 for used in (None, compensator):
-    run = fb.simulate(plant, start, goal, used, switch=0.2, end=0.4, interval=1e-3, engine="mujoco")
+    move = fb.Move(switch=0.2, end=0.4, interval=1e-3, engine="mujoco")
+    run = fb.simulate(plant, start, goal, used, move=move)
     print(run.summary())
     late = run.error_size[run.t > run.t[-1] - 0.05].max()
     print(f"  largest tip error in the last 0.05 s: {1e3 * late:.3f} mm\n")

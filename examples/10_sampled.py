@@ -19,5 +19,6 @@ papers = pd_with_gain(goal, real, goal.arm.gains, printed, "the paper's E")
 ours = controller_for(goal, "coprime", real)
 for controller in (papers, ours):
     for engine in ("builtin", "mujoco"):
-        run = fb.simulate_sampled(controller, start, switch=0.15, end=0.8, push=push, engine=engine)
+        move = fb.SampledMove(switch=0.15, end=0.8, engine=engine)
+        run = fb.simulate_sampled(controller, start, push=push, move=move)
         print(run.summary(), end="\n\n")

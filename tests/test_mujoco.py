@@ -24,6 +24,7 @@ from flexbase.model.loop import Gain
 from flexbase.model.mounted import MountedArm
 from flexbase.model.task import Task
 from flexbase.plant import Plant
+from flexbase.simulation import Move
 from flexbase.simulation.plants.engines import ENGINES
 from flexbase.simulation.plants.mjcf import LEAST, to_mjcf
 from flexbase.simulation.plants.mujoco_plant import mujoco_plant
@@ -248,7 +249,7 @@ TIMES = {"switch": 0.05, "end": 0.1, "interval": 1e-3}
 @pytest.fixture(scope="module")
 def builtin_runs():
     return {
-        name: flexbase.simulate(goal.plant, start, goal, gain, **TIMES, self_motion=0.0)
+        name: flexbase.simulate(goal.plant, start, goal, gain, move=Move(**TIMES, self_motion=0.0))
         for name, (start, goal, gain) in CASES.items()
     }
 
@@ -258,7 +259,7 @@ def test_the_same_run_with_mujocos_accelerations(name, builtin_runs):
     """Same laws and integrator, on MuJoCo's M and forces: tips within 1e-6 m, torques within 1e-6 of their peak."""
     start, goal, gain = CASES[name]
     ours = builtin_runs[name]
-    run = flexbase.simulate(goal.plant, start, goal, gain, **TIMES, self_motion=0.0, engine="mujoco")
+    run = flexbase.simulate(goal.plant, start, goal, gain, move=Move(**TIMES, self_motion=0.0, engine="mujoco"))
     assert ours.stopped is None
     assert np.abs(ours.tip_error).max() > 1e-2
     assert run.tip_error == pytest.approx(ours.tip_error, rel=0.0, abs=SAME_PATH)
@@ -341,7 +342,7 @@ def test_a_tenth_of_a_percent_of_stiffness_would_be_seen(builtin_runs):
     """The control: base springs 0.1 % stiffer in MuJoCo, and the tip leaves ours by more than the tolerance."""
     goal = CASES["paper"][1]
     stiffer = replace(goal.arm, base=replace(goal.arm.base, stiffness=1.001 * goal.arm.base.stiffness))
-    run = flexbase.simulate(Plant(stiffer), START, GOAL, **TIMES, engine="mujoco")
+    run = flexbase.simulate(Plant(stiffer), START, GOAL, move=Move(**TIMES, engine="mujoco"))
     assert np.abs(run.tip_error - builtin_runs["paper"].tip_error).max() > SAME_PATH
 
 
@@ -349,7 +350,8 @@ def test_a_run_that_must_stop_stops_as_ours_does(paper):
     """The goal's gain acting from a start where M - E is not positive: same reason, same time, on either engine."""
     _, goal, compensator = CASES["paper, compensated"]
     for name in ENGINES:
-        run = flexbase.simulate(paper, paper.at([0.5, 0.6]), goal, compensator, compensate="always", engine=name)
+        always = Move(compensate="always", engine=name)
+        run = flexbase.simulate(paper, paper.at([0.5, 0.6]), goal, compensator, move=always)
         assert run.stopped == "M - E was no longer positive definite at 0.0000 s"
         assert len(run.t) == 1
 
@@ -359,7 +361,7 @@ def test_a_run_that_must_stop_stops_as_ours_does(paper):
 
 def test_an_unknown_engine_is_refused(paper):
     with pytest.raises(InputError, match=r'engine: "mujco" is unknown. Did you mean "mujoco"'):
-        flexbase.simulate(paper, START, GOAL, engine="mujco")
+        flexbase.simulate(paper, START, GOAL, move=Move(engine="mujco"))
     assert list(ENGINES) == ["builtin", "mujoco"]
 
 
@@ -367,7 +369,7 @@ def test_without_mujoco_the_extra_is_named(paper, monkeypatch):
     """No MuJoCo: its engine names the extra; to_mjcf, which only writes text, still works."""
     monkeypatch.setitem(sys.modules, "mujoco", None)
     with pytest.raises(MissingExtra, match=r'mujoco is not installed.*"flexbase\[mujoco\]"'):
-        flexbase.simulate(paper, START, GOAL, engine="mujoco")
+        flexbase.simulate(paper, START, GOAL, move=Move(engine="mujoco"))
     assert to_mjcf(paper).startswith('<mujoco model="ueda2003">')
 
 

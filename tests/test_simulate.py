@@ -14,10 +14,11 @@ from flexbase.control.joint_tracking import JointTracking
 from flexbase.control.measured import Measured
 from flexbase.control.task_pd import TaskPD
 from flexbase.control.trajectories import LAWS, JointPath
-from flexbase.model.loop import Gain
-from flexbase.model.task import make_gains
-from flexbase.simulation.result import SETTLED, Run
-from flexbase.simulation.run import _observe
+from flexbase.model.loop import Gain, Loop
+from flexbase.model.task import Gains, make_gains
+from flexbase.simulation import Move, Run
+from flexbase.simulation.observed import observe
+from flexbase.simulation.settling import SETTLED
 from systems.oracle import FullSystem, rigid_bodies
 from systems.planar import planar, sliding_pair
 
@@ -43,7 +44,11 @@ def compensated(paper, compensator):
 @pytest.fixture(scope="module")
 def trapezoid(paper, compensator):
     return flexbase.simulate(
-        paper, NEAR, GOAL, compensator, trajectory="trapezoidal", compensate="always", switch=0.12, end=0.3
+        paper,
+        NEAR,
+        GOAL,
+        compensator,
+        move=Move(trajectory="trapezoidal", compensate="always", switch=0.12, end=0.3),
     )
 
 
@@ -150,7 +155,7 @@ def test_control_laws_never_see_the_base(paper, paper_pose, law):
     torques, jacobians = [], []
     for base, base_rate in ((0.0, 0.0), (0.05, -2.0)):
         q, rates = np.array([base, -1.9, 2.0]), np.array([base_rate, 0.7, -0.4])
-        _, seen = _observe(paper_pose, 0.03, q, rates)
+        _, seen = observe(paper_pose, 0.03, q, rates)
         seen = seen._replace(tip_error=(1e-3, -2e-3), tip_rate=(0.1, 0.2))
         torques.append(control.torque(seen))
         jacobians.append(rigid_bodies(paper_pose).jacobian(q)[:2, 1:])
@@ -173,7 +178,7 @@ def test_task_law_under_gravity_stands_on_the_unloaded_base():
 def test_what_is_observed_is_what_is_there(paper_pose):
     """Arm joints and rates without the base's, the true tip error, and J q' as its rate, by Pinocchio."""
     q, rates = np.array([0.02, -1.9, 2.0]), np.array([-1.0, 0.7, -0.4])
-    _, seen = _observe(paper_pose, 0.0, q, rates)
+    _, seen = observe(paper_pose, 0.0, q, rates)
     bodies = rigid_bodies(paper_pose)
     assert seen.joints == (-1.9, 2.0)
     assert seen.rates == (0.7, -0.4)
@@ -268,7 +273,7 @@ def test_gravity_is_held_at_the_goal():
     the move; a law that forgot gravity would drop the tip by 2 mm (holding torque over task stiffness).
     """
     pose = planar([0.2, 0.3, 0.25], gravity=(9.81, 0.0, 0.0)).at([0.4, 0.9])
-    run = flexbase.simulate(pose.plant, pose, pose, switch=0.01, end=0.03, interval=1e-3)
+    run = flexbase.simulate(pose.plant, pose, pose, move=Move(switch=0.01, end=0.03, interval=1e-3))
     assert np.abs(pose.holding_torque).max() > 0.1
     assert run.q == pytest.approx(np.tile(pose.q, (len(run.t), 1)), abs=2e-5)
     assert run.torque == pytest.approx(np.tile(pose.holding_torque, (len(run.t), 1)), rel=1e-2, abs=0.2)
@@ -280,7 +285,9 @@ def test_a_diverging_run_stops_and_says_so():
     plant = sliding_pair(1.2, stiffness=5e3, damping=1.0)
     gains, goal = make_gains([1e4], [0.0], 1), plant.at([0.3])
     assert FullSystem(goal).close(gains.stiffness, gains.damping).poles().real.max() > 4.0
-    run = flexbase.simulate(plant, plant.at([0.0]), goal, gains=gains, switch=0.05, end=5.0, interval=1e-2)
+    run = flexbase.simulate(
+        plant, plant.at([0.0]), goal, Loop(gains=gains), move=Move(switch=0.05, end=5.0, interval=1e-2)
+    )
     assert "diverged at" in run.stopped
     assert run.t[-1] < 4.0
     assert len(run.t) == len(run.q) == len(run.torque) == len(run.tip_error)
@@ -302,7 +309,7 @@ def test_leaving_the_definite_inertia_stops_the_run(paper, paper_pose):
     trial = far.M.copy()
     trial[1:, 1:] -= E
     assert np.linalg.eigvalsh(trial)[0] < 0.0
-    run = flexbase.simulate(paper, far, paper_pose, Gain(E), compensate="always")
+    run = flexbase.simulate(paper, far, paper_pose, Gain(E), move=Move(compensate="always"))
     assert "no longer positive definite" in run.stopped
     assert len(run.t) < 10
     assert run.peak_error_m is None
@@ -373,13 +380,62 @@ def test_dictionary_carries_the_promised_keys(compensated):
         ({"compensate": "never"}, 'compensate: "never" is unknown'),
         ({"bandwidth": 0.0}, "bandwidth"),
         ({"bandwidth": float("nan")}, "bandwidth"),
-        ({"compensator": Gain(np.eye(3))}, r"E has shape \(3, 3\)"),
+        ({"bandwidth": "fast"}, "bandwidth: 'fast' is not a number"),
+        ({"switch": 0.1j}, "switch"),
+        ({"self_motion": -1.0}, "self_motion: -1 rad/s"),
     ],
 )
 def test_wrong_options_are_refused(paper, options, message):
     """Times, names, bandwidth and gain are checked before anything runs."""
     with pytest.raises(InputError, match=message):
-        flexbase.simulate(paper, START, GOAL, **options)
+        flexbase.simulate(paper, START, GOAL, move=Move(**options))
+
+
+@pytest.mark.parametrize(
+    ("loop", "message"),
+    [
+        (Gain(np.eye(3)), r"E has shape \(3, 3\)"),
+        (Gain(np.array([[0.0, 1.0], [0.0, 0.0]])), "not symmetric"),
+        (Gain(np.full((2, 2), np.nan)), "not finite"),
+        (Loop(gains=Gains(-np.eye(2), np.eye(2))), "stiffness"),
+        (Loop(gains=Gains(np.eye(3), np.eye(3))), "stiffness"),
+    ],
+)
+def test_wrong_loops_are_refused_by_both(paper, loop, message):
+    """One run and many have one door."""
+    with pytest.raises(InputError, match=message):
+        flexbase.simulate(paper, START, GOAL, loop)
+    with pytest.raises(InputError, match=message):
+        flexbase.simulate_many(paper, [0.5, 0.9], GOAL, loop)
+
+
+def test_other_things_than_plants_poses_and_moves_are_refused_by_both(paper, paper_pose):
+    """Another robot's pose, a pose in place of a plant, the options of another verb."""
+    other = flexbase.load("scara").at([0.3, 0.5, 0.1, 0.0])
+    joints = [0.5, 0.9]
+    for verb, start, foreign in (
+        (flexbase.simulate, START, flexbase.SampledMove()),
+        (flexbase.simulate_many, joints, Move()),
+    ):
+        with pytest.raises(InputError, match="a pose of scara is no pose of ueda2003"):
+            verb(paper, start, other)
+        with pytest.raises(InputError, match="a pose of scara is no pose of ueda2003"):
+            verb(paper, other, GOAL)
+        with pytest.raises(InputError, match="plant: Pose given"):
+            verb(paper_pose, start, GOAL)
+        with pytest.raises(InputError, match=f"move: {type(foreign).__name__} given"):
+            verb(paper, start, GOAL, move=foreign)
+
+
+def test_cautions_are_kept_with_the_run(paper, paper_pose, compensator):
+    """A compensator of another robot is used, and said to be; so with many runs."""
+    borrowed = dataclasses.replace(compensator, robot="another")
+    short = {"switch": 0.005, "end": 0.01}
+    with pytest.warns(flexbase.FlexbaseWarning, match='designed for "another"'):
+        run = flexbase.simulate(paper, paper_pose, paper_pose, borrowed, move=Move(**short, interval=1e-3))
+    with pytest.warns(flexbase.FlexbaseWarning, match='designed for "another"'):
+        runs = flexbase.simulate_many(paper, paper_pose, paper_pose, borrowed, move=flexbase.Moves(**short))
+    assert run.cautions == runs.cautions == ('compensator: designed for "another", used on "ueda2003".',)
 
 
 def test_missing_gains_are_asked_for(paper):
@@ -393,7 +449,7 @@ def test_a_gain_too_large_for_the_goal_is_refused_at_once(paper, paper_pose):
     """M - E indefinite at the goal already: nothing can be simulated, and the reason is given."""
     E = 1.5 * paper_pose.M[1:, 1:]
     try:
-        run = flexbase.simulate(paper, START, GOAL, Gain(E), switch=0.005, end=0.01)
+        run = flexbase.simulate(paper, START, GOAL, Gain(E), move=Move(switch=0.005, end=0.01))
     except InputError as refusal:
         assert "not positive definite" in str(refusal)  # noqa: PT017
     else:

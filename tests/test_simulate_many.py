@@ -17,7 +17,7 @@ from flexbase.dynamics.rotation_vector import rotation_vector
 from flexbase.model.mechanism import Body, with_payload
 from flexbase.model.task import make_gains
 from flexbase.simulation.many.result import DIVERGED, INDEFINITE, OK
-from flexbase.simulation.run import _observe
+from flexbase.simulation.observed import observe
 from flexbase.trace.algebra import matvec
 from systems.oracle import RigidBodies
 from systems.planar import planar
@@ -42,10 +42,10 @@ def test_runs_are_those_of_simulate(paper, compensator, compensate, trajectory):
     """End, peak and settling time of the paper's arm, the last to a sample of the one and a step of the other."""
     starts, gain = starts_near(paper, NEAR, 9), compensator if compensate else None
     how = {"compensate": compensate or "settle", "trajectory": trajectory, "end": 0.2}
-    runs = fb.simulate_many(paper, starts, GOAL, gain, **how)
+    runs = fb.simulate_many(paper, starts, GOAL, gain, move=fb.Moves(**how))
     assert runs.step_error <= CLOSE
     for i in (0, 8):  # a whole block of lanes, and its tail
-        one = fb.simulate(paper, paper.at(starts[i]), GOAL, gain, interval=5e-4, **how)
+        one = fb.simulate(paper, paper.at(starts[i]), GOAL, gain, move=fb.Move(interval=5e-4, **how))
         np.testing.assert_allclose(runs.q[i], one.q[-1], rtol=0.0, atol=CLOSE)
         np.testing.assert_allclose(runs.rates[i], one.rates[-1], rtol=0.0, atol=1e3 * CLOSE)  # modes of 350 rad/s
         np.testing.assert_allclose(runs.tip_error[i], one.tip_error[-1], rtol=0.0, atol=CLOSE)
@@ -60,7 +60,7 @@ def test_the_check_can_fail(paper, compensator):
     starts = starts_near(paper, NEAR, 8)
     right = fb.simulate_many(paper, starts, GOAL, compensator)
     assert np.abs(fb.simulate_many(paper, starts, GOAL).q - right.q).max() > 1e3 * CLOSE
-    coarse = fb.simulate_many(paper, starts, GOAL, tolerance=1e-3)
+    coarse = fb.simulate_many(paper, starts, GOAL, move=fb.Moves(tolerance=1e-3))
     fine = fb.simulate_many(paper, starts, GOAL)
     assert coarse.step[1] >= fine.step[1]
 
@@ -71,8 +71,8 @@ def test_rotation_rows_gravity_and_redundant_arms(rows):
     plant = planar([0.3, 0.4, 0.35, 0.2], rows=rows, gravity=(0.0, -9.81, 0.0))
     goal = plant.at([0.4, 0.9, -0.5])
     starts = goal.q[1:] + np.random.default_rng(1).uniform(-0.05, 0.05, (3, 3))
-    runs = fb.simulate_many(plant, starts, goal, switch=0.06, end=0.12)
-    one = fb.simulate(plant, plant.at(starts[2]), goal, **FASTER)
+    runs = fb.simulate_many(plant, starts, goal, move=fb.Moves(switch=0.06, end=0.12))
+    one = fb.simulate(plant, plant.at(starts[2]), goal, move=fb.Move(**FASTER))
     np.testing.assert_allclose(runs.q[2], one.q[-1], rtol=0.0, atol=CLOSE)
     assert runs.peak_error_m[2] == pytest.approx(one.peak_error_m, rel=1e-3)  # samples of 1 ms miss the very peak
     assert runs.peak_error_m[2] >= one.peak_error_m - CLOSE
@@ -89,7 +89,7 @@ def independent_end(plant, start, goal, truth, E, stiffness, damping):
 
         def rate(t, x, law=law, gain=gain):
             q, v = x[:N], x[N:]
-            _, seen = _observe(goal, t, q, v)
+            _, seen = observe(goal, t, q, v)
             M = bodies.inertia(q)
             if gain is not None:
                 M[m:, m:] -= gain
@@ -121,9 +121,8 @@ def test_varied_robots_against_pinocchio(paper, paper_pose, compensator, changes
     wanted = independent_end(paper, start, paper_pose, truth, E, stiffness, damping)
     names = list(changes)
     vary = {name: [changes[name], nominal(name)] for name in names}
-    runs = fb.simulate_many(
-        paper, start, paper_pose, compensator, vary=vary, switch=FASTER["switch"], end=FASTER["end"]
-    )
+    faster = fb.Moves(switch=FASTER["switch"], end=FASTER["end"])
+    runs = fb.simulate_many(paper, start, paper_pose, compensator, vary=vary, move=faster)
     np.testing.assert_allclose(runs.q[0], wanted, rtol=0.0, atol=CLOSE)
     assert np.abs(runs.q[1] - wanted).max() > 30.0 * CLOSE  # the nominal robot goes elsewhere
 
@@ -137,7 +136,7 @@ def test_factors_on_gains_are_other_gains(paper, paper_pose, compensator):
     other = make_gains(2.0 * paper.arm.gains.stiffness, 0.7 * paper.arm.gains.damping, 2)
     vary = {"task_stiffness": 2.0, "task_damping": 0.7}
     by_factors = fb.simulate_many(paper, start, paper_pose, compensator, vary=vary)
-    by_gains = fb.simulate_many(paper, start, paper_pose, compensator, gains=other)
+    by_gains = fb.simulate_many(paper, start, paper_pose, fb.Loop(compensator, other))
     np.testing.assert_allclose(by_factors.q, by_gains.q, rtol=0.0, atol=2.0 * CLOSE)
 
 
@@ -159,20 +158,20 @@ def test_runs_that_run_away_are_said_to_diverge(paper, paper_pose):
     """Damping taken away and a million times the stiffness: more than 1000 rad/s. The neighbour's step is no excuse."""
     start = starts_near(paper, NEAR, 1)[0]
     vary = {"task_stiffness": [1.0, 1e8], "task_damping": [1.0, 0.0]}
-    runs = fb.simulate_many(paper, start, paper_pose, vary=vary, end=0.15)
+    runs = fb.simulate_many(paper, start, paper_pose, vary=vary, move=fb.Moves(end=0.15))
     assert runs.status.tolist() == [OK, DIVERGED]
     assert runs.step_error <= CLOSE
-    alone = fb.simulate_many(paper, start, paper_pose, end=0.15)
+    alone = fb.simulate_many(paper, start, paper_pose, move=fb.Moves(end=0.15))
     np.testing.assert_allclose(runs.q[0], alone.q[0], rtol=0.0, atol=2.0 * CLOSE)
 
 
 def test_a_step_that_is_too_long_is_not_taken_for_divergence(paper, paper_pose):
     """Forty times the damping makes poles forty times as fast as those that the first step is chosen by."""
     start = starts_near(paper, NEAR, 1)[0]
-    runs = fb.simulate_many(paper, start, paper_pose, vary={"task_damping": [1.0, 40.0]}, end=0.15)
+    runs = fb.simulate_many(paper, start, paper_pose, vary={"task_damping": [1.0, 40.0]}, move=fb.Moves(end=0.15))
     assert runs.status.tolist() == [OK, OK]
     gains = make_gains(paper.arm.gains.stiffness, 40.0 * paper.arm.gains.damping, 2)
-    one = fb.simulate(paper, paper.at(start), paper_pose, gains=gains, end=0.15, interval=1e-3)
+    one = fb.simulate(paper, paper.at(start), paper_pose, fb.Loop(gains=gains), move=fb.Move(end=0.15, interval=1e-3))
     np.testing.assert_allclose(runs.q[1], one.q[-1], rtol=0.0, atol=CLOSE)
 
 
@@ -187,7 +186,9 @@ def test_inputs_are_refused_by_name(paper):
     with pytest.raises(fb.InputError, match=r"runs: 2 of starts, 3 of payload"):
         fb.simulate_many(paper, [start, start], GOAL, vary={"payload": [0.0, 1.0, 2.0]})
     with pytest.raises(fb.InputError, match=r"times: switch \(0.5 s\)"):
-        fb.simulate_many(paper, start, GOAL, switch=0.5, end=0.2)
+        fb.simulate_many(paper, start, GOAL, move=fb.Moves(switch=0.5, end=0.2))
+    with pytest.raises(fb.InputError, match="threads: 0 is none"):
+        fb.simulate_many(paper, start, GOAL, move=fb.Moves(threads=0))
 
 
 def test_rotation_vectors_are_scipys():

@@ -20,11 +20,22 @@ from flexbase.linear.passivity.verdict import Verdict
 from flexbase.linear.second_order import SecondOrder
 from flexbase.measures import MEASURES
 from flexbase.measures.manipulability import Ellipsoid, Manipulability, manipulability
+from flexbase.model.loop import Loop
 from flexbase.model.task import Gains
 from flexbase.plant import Plant, Pose, load
-from flexbase.simulation import Run, Runs, simulate, simulate_many
-from flexbase.simulation.hardware.result import Push, SampledRun
-from flexbase.simulation.hardware.run import simulate_sampled, simulate_sampled_many
+from flexbase.simulation import (
+    Move,
+    Moves,
+    Push,
+    Run,
+    Runs,
+    SampledMove,
+    SampledRun,
+    simulate,
+    simulate_many,
+    simulate_sampled,
+    simulate_sampled_many,
+)
 from flexbase.simulation.plants.mjcf import to_mjcf
 from flexbase.study.agreement.study import Agreement, agreement_study
 from flexbase.study.layout.layout import Layout, best_layout
@@ -53,10 +64,13 @@ __all__ = [
     "InputError",
     "Layout",
     "Lognormal",
+    "Loop",
     "Manipulability",
     "MissingExtra",
     "Mode",
     "Modes",
+    "Move",
+    "Moves",
     "Normal",
     "Plant",
     "Pose",
@@ -67,6 +81,7 @@ __all__ = [
     "RobustPoints",
     "Run",
     "Runs",
+    "SampledMove",
     "SampledRun",
     "SecondOrder",
     "SingularArm",

@@ -16,8 +16,7 @@ from flexbase.model.sensing import Sensing
 from flexbase.sampled.changes import Changed, changed_pose
 from flexbase.sampled.controller import pd_with_gain
 from flexbase.sampled.plant import sampled_plant
-from flexbase.simulation.hardware.result import Push, SampledRun
-from flexbase.simulation.hardware.run import simulate_sampled, simulate_sampled_many
+from flexbase.simulation import Push, SampledMove, SampledRun, simulate_sampled, simulate_sampled_many
 from flexbase.simulation.plants import builtin_held
 from flexbase.simulation.plants.builtin import accelerations
 from flexbase.simulation.plants.builtin_held import BuiltinHeld
@@ -96,7 +95,7 @@ def test_a_tiny_motion_is_the_linear_loops(paper_pose, sensing, engine):
         pytest.importorskip("mujoco")
     controller = soft(paper_pose, sensing, 0.3 * E)
     away = TINY * np.array([1.0, -0.7])
-    run = simulate_sampled(controller, paper_pose.q[1:] + away, end=0.1, engine=engine)
+    run = simulate_sampled(controller, paper_pose.q[1:] + away, move=SampledMove(end=0.1, engine=engine))
     expected = linear_run(paper_pose, controller, away, len(run.t))
     assert np.abs(run.tip_error - expected).max() < 3e-4 * np.abs(expected).max()
 
@@ -130,7 +129,12 @@ def test_both_plants_make_the_same_move(paper, paper_pose):
     controller = soft(paper_pose, REAL)
     push = Push((50.0, 0.0), 0.5, 0.02)
     runs = [
-        simulate_sampled(controller, paper.at_tip([0.33, 0.25]), switch=0.15, end=0.8, push=push, engine=engine)
+        simulate_sampled(
+            controller,
+            paper.at_tip([0.33, 0.25]),
+            push=push,
+            move=SampledMove(switch=0.15, end=0.8, engine=engine),
+        )
         for engine in ENGINES
     ]
     assert runs[0].saturated_samples > 20
@@ -147,7 +151,9 @@ def test_mujoco_runs_without_our_dynamics(paper_pose, monkeypatch):
     own = mujoco.mj_step
     monkeypatch.setattr(mujoco, "mj_step", lambda *words: (steps.append(1), own(*words)))
     monkeypatch.setattr(builtin_held, "functions_of", None)
-    run = simulate_sampled(soft(paper_pose, Sensing()), paper_pose.q[1:] + 1e-3, end=0.2, engine="mujoco")
+    run = simulate_sampled(
+        soft(paper_pose, Sensing()), paper_pose.q[1:] + 1e-3, move=SampledMove(end=0.2, engine="mujoco")
+    )
     assert len(steps) == 5 * 200
     assert run.peak_error_m > 1e-4
 
@@ -159,20 +165,23 @@ def test_the_papers_gain_is_unstable_and_a_softer_loop_settles(paper_pose, engin
         pytest.importorskip("mujoco")
     near = paper_pose.q[1:] + 1e-4
     papers = pd_with_gain(paper_pose, Sensing(), paper_pose.arm.gains, E, "the paper's E")
-    found = simulate_sampled(papers, near, engine=engine)
+    move = SampledMove(engine=engine)
+    found = simulate_sampled(papers, near, move=move)
     assert found.diverged
     assert not found.settled
     assert not found.predicted
     assert "diverged" in found.summary()
     assert found.t[-1] < 0.3
-    assert simulate_sampled(soft(paper_pose, Sensing()), near, engine=engine).settled
-    assert simulate_sampled(controller_for(paper_pose, "coprime", Sensing()), near, engine=engine).settled
+    assert simulate_sampled(soft(paper_pose, Sensing()), near, move=move).settled
+    assert simulate_sampled(
+        controller_for(paper_pose, "coprime", Sensing()), near, move=SampledMove(engine=engine)
+    ).settled
 
 
 def test_a_long_push_meets_the_static_stiffness(paper_pose):
     """A force of 0.1 N held until all is still: the linear plant's static gain, to 1e-4 (it moves the tip by 10 um)."""
     controller, force = soft(paper_pose, Sensing()), np.array([0.06, -0.08])
-    run = simulate_sampled(controller, end=1.5, push=Push(tuple(force), 0.0, 1.4))
+    run = simulate_sampled(controller, push=Push(tuple(force), 0.0, 1.4), move=SampledMove(end=1.5))
     still = run.tip_error[round(1.39 * 1000)]
     Jv, K = paper_pose.J[:, 1:], paper_pose.K
     loop = K + np.block([[np.zeros((1, 3))], [np.zeros((2, 1)), np.zeros((2, 2))]])
@@ -187,7 +196,7 @@ def test_a_changed_robot_is_run_with_the_old_controller(paper_pose):
     change = Changed("both", base_stiffness=0.8, joints=((0, 0.1),))
     real, controller = changed_pose(paper_pose, change), soft(paper_pose, Sensing())
     away = TINY * np.array([1.0, 0.5])
-    run = simulate_sampled(controller, real.q[1:] + away, pose=real, end=0.1)
+    run = simulate_sampled(controller, real.q[1:] + away, pose=real, move=SampledMove(end=0.1))
     expected = linear_run(real, controller, away, len(run.t))
     nominal = linear_run(paper_pose, controller, away, len(run.t))
     assert np.abs(run.tip_error - expected).max() < 1e-4 * np.abs(expected).max()
@@ -202,9 +211,9 @@ def test_gravity_is_held_by_the_controllers_model():
     gains = Gains(2e3 * np.eye(3), 80.0 * np.eye(3))
     controller = pd_with_gain(pose, sensing, gains, None, "soft")
     if plant.arm.has_gravity:
-        assert simulate_sampled(controller, end=0.05).peak_error_m < 1e-9
+        assert simulate_sampled(controller, move=SampledMove(end=0.05)).peak_error_m < 1e-9
     heavier = changed_pose(pose, Changed("heavy", last_link=1.1))
-    moved = simulate_sampled(controller, pose=heavier, end=0.05).peak_error_m
+    moved = simulate_sampled(controller, pose=heavier, move=SampledMove(end=0.05)).peak_error_m
     assert (moved > 1e-7) == plant.arm.has_gravity
 
 
@@ -216,9 +225,9 @@ def test_side_by_side_is_one_by_one(paper):
     poses = [paper.at([0.4 * i, 1.0 + 0.2 * i]) for i in range(4)]
     made = [soft(pose, SENSINGS[0 if i % 2 else 2], 0.2 * E if i > 1 else None) for i, pose in enumerate(poses)]
     starts = [pose.q[1:] + 1e-3 for pose in poses]
-    together = simulate_sampled_many(made, starts, end=0.1)
+    together = simulate_sampled_many(made, starts, move=SampledMove(end=0.1))
     for one, start, found in zip(made, starts, together, strict=True):
-        alone = simulate_sampled(one, start, end=0.1)
+        alone = simulate_sampled(one, start, move=SampledMove(end=0.1))
         assert found.controller is one
         assert np.abs(alone.tip_error - found.tip_error).max() < 1e-9
 
@@ -226,14 +235,14 @@ def test_side_by_side_is_one_by_one(paper):
 def test_rows_do_without_the_extra(paper_pose, monkeypatch):
     """NumPy rows give what the machine code gives."""
     import_extra("casadi", "fast")
-    compiled = simulate_sampled(soft(paper_pose, REAL), paper_pose.q[1:] + 1e-3, end=0.05)
+    compiled = simulate_sampled(soft(paper_pose, REAL), paper_pose.q[1:] + 1e-3, move=SampledMove(end=0.05))
 
     def missing(*_, **__):
         raise MissingExtra("no")
 
     monkeypatch.setattr(builtin_held, "kernel_of", missing)
     builtin_held.functions_of.cache_clear()
-    rows = simulate_sampled(soft(paper_pose, REAL), paper_pose.q[1:] + 1e-3, end=0.05)
+    rows = simulate_sampled(soft(paper_pose, REAL), paper_pose.q[1:] + 1e-3, move=SampledMove(end=0.05))
     builtin_held.functions_of.cache_clear()
     assert np.abs(rows.tip_error - compiled.tip_error).max() < 1e-11
 
@@ -241,18 +250,26 @@ def test_rows_do_without_the_extra(paper_pose, monkeypatch):
 def test_joint_tracking_has_its_own_limit(paper, paper_pose):
     """Sampled, the move's own law is unstable at the continuous one's bandwidth: rho(Ms^-1 Mhat) = 11 at its start."""
     start = paper.at_tip([0.33, 0.25])
-    run = simulate_sampled(soft(paper_pose, Sensing()), start, switch=0.1, end=0.3, bandwidth=60.0)
-    assert run.diverged
-    assert not simulate_sampled(soft(paper_pose, Sensing()), start, switch=0.1, end=0.3).diverged
+    controller, times = soft(paper_pose, Sensing()), {"switch": 0.1, "end": 0.3}
+    assert simulate_sampled(controller, start, move=SampledMove(**times, bandwidth=60.0)).diverged
+    assert not simulate_sampled(controller, start, move=SampledMove(**times)).diverged
 
 
 @pytest.mark.parametrize(
     ("words", "match"),
     [
-        ({"end": -1.0}, "times"),
-        ({"end": 0.005}, "5 samples"),
-        ({"switch": 0.6}, "switch"),
-        ({"engine": "real"}, "engine"),
+        ({"move": SampledMove(end=-1.0)}, "times"),
+        ({"move": SampledMove(end=0.005)}, "5 samples"),
+        ({"move": SampledMove(switch=0.6)}, "switch"),
+        ({"move": SampledMove(engine="real")}, "engine"),
+        ({"move": SampledMove(bandwidth=0.0)}, "bandwidth"),
+        ({"move": SampledMove(tolerance=-1.0)}, "tolerance"),
+        ({"move": SampledMove(seed=-1)}, "seed: -1 is below 0"),
+        ({"move": SampledMove(seed=0.5)}, "seed: 0.5 is not a whole number"),
+        ({"move": fb.Move()}, "move: Move given"),
+        ({"pose": [0.1, 0.2]}, "pose: list given"),
+        ({"push": (1.0, 0.0)}, "push: tuple given"),
+        ({"push": Push((1.0, 0.0), float("nan"), 0.1)}, "push"),
         ({"push": Push((1.0,), 0.1, 0.1)}, "push"),
         ({"push": Push((1.0, 0.0), 0.4, 0.2)}, "does not end"),
         ({"start": [0.1]}, "start"),
@@ -266,6 +283,10 @@ def test_wrong_words_are_named(paper_pose, words, match):
 def test_other_robots_and_algebraic_loops_are_refused(paper_pose):
     with pytest.raises(InputError, match="other joints"):
         simulate_sampled(soft(paper_pose, Sensing()), pose=fb.load("scara").at([0.3, 0.5, 0.1, 0.0]))
+    with pytest.raises(InputError, match="other joints"):
+        simulate_sampled(soft(paper_pose, Sensing()), fb.load("scara").at([0.3, 0.5, 0.1, 0.0]))
+    with pytest.raises(InputError, match="controller: Pose given"):
+        simulate_sampled(paper_pose)
     ideal = Sensing(compute_delay=0, accelerometer_lag=0.0)
     with pytest.raises(InputError, match="depends on the torque"):
         simulate_sampled(soft(paper_pose, ideal, E))

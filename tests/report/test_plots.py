@@ -37,7 +37,7 @@ def results(paper, paper_pose, recursion, exact) -> dict[str, object]:
     with pytest.warns(fb.FlexbaseWarning, match="rigid base"):
         rigid = planar([0.3, 0.2], m=0)
     cart = sliding_pair(0.4)
-    run = {"start": [0.33, -0.24], "goal": PAPER_TIP, "switch": 0.02, "end": 0.05}
+    run = {"start": [0.33, -0.24], "goal": PAPER_TIP, "move": fb.Move(switch=0.02, end=0.05)}
     return {
         "recursion": recursion,
         "exact": exact,
@@ -50,7 +50,7 @@ def results(paper, paper_pose, recursion, exact) -> dict[str, object]:
         "verdict of no mode": fb.verdict(rigid.at([0.5, 0.7])),
         "verdict without damping": fb.verdict(planar([0.3, 0.3, 0.3], damping=0.0).at([0.5, 0.7])),
         "run": fb.simulate(paper, **run),
-        "compensated run": fb.simulate(paper, **run, compensator=exact),
+        "compensated run": fb.simulate(paper, **run, loop=exact),
         "manipulability": fb.manipulability(paper_pose, exact),
         "torque manipulability": fb.manipulability(paper_pose, exact, "torque"),
         "one axis": fb.manipulability(cart.at([0.1])),

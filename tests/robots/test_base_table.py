@@ -398,7 +398,7 @@ def test_both_engines_feel_friction_and_rotors(folder, engine):
     pose, mechanism = plant.at(Q), plant.arm.mechanism
     rates, torque = np.array([0.3, -0.5, 1.0, -2.0, 1.5]), np.array([1.0, 2.0, -3.0])
     q = Q + 0.1
-    physics = ENGINES[engine](pose)
+    physics = ENGINES[engine].accelerations(pose)
     found = physics(forward(mechanism, tuple(q.tolist())), q, rates, torque, None)
     force = -RigidBodies(mechanism).bias(q, rates) - np.array([100.0, 8.0, 2.0, 3.0, 4.0]) * rates
     force[:2] += np.array([3e5, 2e4]) * (Q - q)[:2]

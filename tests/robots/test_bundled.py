@@ -231,8 +231,8 @@ def test_both_engines_move_it_the_same_way(name):
     start = poses(plant, 1, seed=9)[0]
     goal = plant.at(start.q[plant.arm.m :] + 0.01)
     times = {"switch": 0.006, "end": 0.012, "interval": 1e-3}
-    ours = fb.simulate(plant, start, goal, **times)
-    theirs = fb.simulate(plant, start, goal, **times, engine="mujoco")
+    ours = fb.simulate(plant, start, goal, move=fb.Move(**times))
+    theirs = fb.simulate(plant, start, goal, move=fb.Move(**times, engine="mujoco"))
     assert (ours.stopped, theirs.stopped) == (None, None)
     assert np.abs(ours.tip_error).max() > 1e-3
     assert theirs.tip_error == pytest.approx(ours.tip_error, rel=0.0, abs=SAME_PATH)

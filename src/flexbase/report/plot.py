@@ -30,8 +30,7 @@ from flexbase.report.maps.probability import draw_probability
 from flexbase.report.maps.sweep import draw_chart, draw_dataset
 from flexbase.report.save import check_picture_path, save_figure
 from flexbase.report.style import styled
-from flexbase.simulation import Run
-from flexbase.simulation.hardware.result import SampledRun
+from flexbase.simulation import Run, SampledRun
 from flexbase.study.layout.layout import Layout
 from flexbase.study.montecarlo import Probability, is_study
 from flexbase.study.postures.posture import Postures

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from flexbase.checks import Array
 from flexbase.plant import Pose
-
-SETTLED = 1e-4  # m (and rad for rotation rows): the tip counts as settled below this
+from flexbase.simulation.settling import SETTLED, error_sizes
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,6 +23,7 @@ class Run:
     closed_loop_abscissa : rightmost pole of the linear loop at the goal [1/s]; positive, the run may only be too short
     stopped : why the run ended early, or None
     engine : the physics behind it, "builtin" or "mujoco"
+    cautions : what should be known of the loop
     """
 
     start: Pose
@@ -38,6 +38,7 @@ class Run:
     closed_loop_abscissa: float
     stopped: str | None = None
     engine: str = "builtin"
+    cautions: tuple[str, ...] = ()
 
     @property
     def settling(self) -> NDArray[np.bool_]:
@@ -47,9 +48,7 @@ class Run:
     @property
     def error_size(self) -> Array:
         """Length of the tip error: positions in m, or rotations in rad where larger, shape (T,)."""
-        rotation = np.array([row.startswith("r") for row in self.goal.arm.task.rows])
-        parts = [np.linalg.norm(self.tip_error[:, part], axis=1) for part in (~rotation, rotation)]
-        return np.asarray(np.maximum(*parts))
+        return error_sizes(self.tip_error, self.goal.arm.task)
 
     @property
     def settling_time_s(self) -> float | None:

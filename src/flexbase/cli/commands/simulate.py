@@ -8,7 +8,7 @@ from cyclopts import App, Group, Parameter
 
 from flexbase.cli.options.common import CompensatorFile, Json, option
 from flexbase.cli.options.gains import GainOptions
-from flexbase.cli.options.move import RunOptions
+from flexbase.cli.options.move import MoveOptions
 from flexbase.cli.options.pose import Elbow, Robot, compensator_of, tip_pose
 from flexbase.cli.options.sampled import SampledOptions
 from flexbase.cli.options.sensing import SensingOptions
@@ -18,10 +18,10 @@ from flexbase.cli.terminal.out import Out, check_out, write_out, written
 from flexbase.cli.terminal.run import tables
 from flexbase.cli.terminal.sampled_table import tables as sampled_tables
 from flexbase.cli.terminal.show import put
+from flexbase.model.loop import Loop
 from flexbase.plant import load
-from flexbase.simulation import Run
+from flexbase.simulation import Run, SampledRun
 from flexbase.simulation import simulate as run_of
-from flexbase.simulation.hardware.result import SampledRun
 
 app = App(
     name="simulate",
@@ -47,8 +47,8 @@ def simulate(
     goal: Annotated[Vector, option(numbers, "X,Y", "where it settles [m, rad]", name="--to", group=MOVE)],
     elbow: Annotated[Elbow, Parameter(group=MOVE)] = None,
     compensator: CompensatorFile = None,
-    run: RunOptions = RunOptions(),  # noqa: B008
-    loop: GainOptions = GainOptions(),  # noqa: B008
+    move: MoveOptions = MoveOptions(),  # noqa: B008
+    gains: GainOptions = GainOptions(),  # noqa: B008
     sampled: SampledOptions = SampledOptions(),  # noqa: B008
     senses: SensingOptions = SensingOptions(),  # noqa: B008
     out: Out = None,
@@ -61,11 +61,11 @@ def simulate(
     there = tip_pose(plant, "--to", goal, elbow, near=law)
     here = tip_pose(plant, "--from", start, elbow, near=there)
     found: Run | SampledRun
+    asked = Loop(law, gains.gains(plant))
     if sampled.asked(senses):
-        controller = sampled.controller(there, senses, loop.gains(plant), law)
-        found = sampled.run(controller, here, **run.times())
+        found = sampled.run(here, there, senses, asked, move)
     else:
-        found = run_of(plant, here, there, law, gains=loop.gains(plant), **run.given())
+        found = run_of(plant, here, there, asked, move=move)
     content = found.to_dict()
     write_out(out, "simulate", found, content)
     rows = tables(found) if isinstance(found, Run) else sampled_tables(found)

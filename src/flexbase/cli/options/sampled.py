@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Annotated, Any
+from dataclasses import dataclass, replace
+from typing import Annotated
 
 from cyclopts import Group, Parameter
 
 from flexbase.cli.options.common import option
+from flexbase.cli.options.move import as_sampled
 from flexbase.cli.options.sensing import SensingOptions
 from flexbase.cli.options.words import Vector, numbers
-from flexbase.control.compensator import Compensator
 from flexbase.errors import InputError
-from flexbase.model.loop import Loop, loop_on
-from flexbase.model.task import Gains
+from flexbase.model.loop import Loop, LoopSpec, loop_on
 from flexbase.plant import Pose
 from flexbase.sampled.controller import SampledController, pd_with_gain
-from flexbase.simulation.hardware.result import Push, SampledRun
-from flexbase.simulation.hardware.run import simulate_sampled
+from flexbase.simulation import Move, Push, SampledRun, simulate_sampled
 from flexbase.synthesis import HARDWARE_METHODS, controller_for
 
 PUSH = 0.02  # s
@@ -45,20 +43,16 @@ class SampledOptions:
             raise InputError(f"--{given[0].replace('_', '-')}: says how a sampled loop runs. Give --sampled with it.")
         return self.sampled
 
-    def controller(
-        self, goal: Pose, senses: SensingOptions, gains: Gains | None, law: Compensator | None
-    ) -> SampledController:
-        """By the method, else task PD with the compensator, if any. Raises InputError, Infeasible."""
-        sensing, used = senses.sensing(goal.plant), gains or goal.arm.gains
-        if law is None:
-            return controller_for(goal, self.method or "none", sensing, used)
+    def run(self, start: Pose, goal: Pose, senses: SensingOptions, loop: Loop, move: Move) -> SampledRun:
+        """The move, by the method, else by task PD with the compensator, if any. Raises InputError, Infeasible."""
+        times = as_sampled(move)
+        push = None if self.disturb is None else Push(self.disturb, 0.5 * (times.switch + times.end), PUSH)
+        controller = self._controller(goal, loop_on(goal.arm, replace(loop, sensing=senses.sensing(goal.plant))))
+        return simulate_sampled(controller, start, push=push, move=times)
+
+    def _controller(self, goal: Pose, loop: LoopSpec) -> SampledController:
+        if loop.E is None:
+            return controller_for(goal, self.method or "none", loop.sensing, loop.gains)
         if self.method is not None:
             raise InputError("--method and --compensator are both given. Give one of them.")
-        loop = loop_on(goal.arm, Loop(law, used, sensing))
         return pd_with_gain(goal, loop.sensing, loop.gains, loop.E, "compensator")
-
-    def run(self, controller: SampledController, start: Pose, **times: Any) -> SampledRun:
-        """The move. Raises InputError, MissingExtra."""
-        middle = 0.5 * (times["switch"] + times["end"])
-        push = None if self.disturb is None else Push(self.disturb, middle, PUSH)
-        return simulate_sampled(controller, start, push=push, **times)

@@ -6,7 +6,7 @@ from rich.console import RenderableType
 
 from flexbase.cli.terminal.digits import number as shown
 from flexbase.cli.terminal.show import facts, title, verdict
-from flexbase.simulation.hardware.result import SampledRun
+from flexbase.simulation import SampledRun
 
 
 def tables(found: SampledRun) -> list[RenderableType]:

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from flexbase.report.figures.run import draw_motion
 from flexbase.report.style import INK
-from flexbase.simulation.hardware.result import SampledRun
+from flexbase.simulation import SampledRun
 
 
 def draw_sampled(run: SampledRun) -> Figure:

@@ -10,21 +10,10 @@ import numpy as np
 from flexbase.checks import Array
 from flexbase.plant import Pose
 from flexbase.sampled.controller import SampledController
-from flexbase.simulation.result import SETTLED
+from flexbase.simulation.hardware.push import Push
+from flexbase.simulation.settling import SETTLED, error_sizes
 
 GROWS = 1.5  # of the error between two quarters of the time judged: more than noise and counts make of one another
-
-
-@dataclass(frozen=True, eq=False)
-class Push:
-    """A force on the tool from `start` [s], rounded to samples, for `duration` [s].
-
-    force : one for each task row [N or N m]
-    """
-
-    force: tuple[float, ...]
-    start: float
-    duration: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +26,7 @@ class SampledRun:
     spectral_radius : of the linear loop at the goal, a sample; below 1 the verdict is that it settles
     saturated_samples : in which a drive could not give the torque that it was asked for
     tolerance : tip error below which it counts as settled [m, and rad for rotation rows]
-    stopped : why the run ended early, or None
+    stopped : why the run ended early, or None; cautions : what should be known of the loop
     """
 
     controller: SampledController
@@ -55,6 +44,7 @@ class SampledRun:
     seed: int
     tolerance: float = SETTLED
     stopped: str | None = None
+    cautions: tuple[str, ...] = ()
 
     @property
     def diverged(self) -> bool:
@@ -74,9 +64,7 @@ class SampledRun:
     @property
     def error_size(self) -> Array:
         """Length of the tip error: positions in m, or rotations in rad where larger, shape (T,)."""
-        rotation = np.array([row.startswith("r") for row in self.goal.arm.task.rows])
-        parts = [np.linalg.norm(self.tip_error[:, part], axis=1) for part in (~rotation, rotation)]
-        return np.asarray(np.maximum(*parts))
+        return error_sizes(self.tip_error, self.goal.arm.task)
 
     @property
     def growth(self) -> float | None:

@@ -8,13 +8,12 @@ from functools import cached_property
 import numpy as np
 
 from flexbase.checks import Array
-from flexbase.control.joint_tracking import JointTracking
 from flexbase.control.null_space import Law
-from flexbase.control.trajectories import JointPath
-from flexbase.control.trajectories import Law as Motion
 from flexbase.errors import InputError
 from flexbase.plant import Pose
+from flexbase.simulation.laws import moving_law
 from flexbase.simulation.many.step import Step
+from flexbase.simulation.move import Moves
 from flexbase.trace.algebra import Scalar, Vector
 from flexbase.trace.kernel import Kernel, kernel_of
 
@@ -26,12 +25,10 @@ class Tracking:
     """The move's law, of any start."""
 
     goal: Pose
-    motion: Motion
-    bandwidth: float
+    move: Moves
 
     def __call__(self, start: Vector, switch: Scalar) -> Law:
-        path = JointPath(start, self.goal.q[self.goal.arm.m :].tolist(), switch, self.motion)
-        return JointTracking(self.goal, path, self.bandwidth)
+        return moving_law(self.goal, start, switch, self.move)
 
 
 @dataclass(frozen=True)

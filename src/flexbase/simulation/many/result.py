@@ -25,6 +25,7 @@ class Runs:
     settling_time_s : after switching, until the tip stays below 0.1 mm; NaN where it does not
     status : 0 ok, 1 diverged (or too long a step), 2 M - E was not positive definite on the way; 2 goes before 1
     step : of the integrator in the move and in the settling phase [s]
+    cautions : what should be known of the loop and the steps
     step_error : what the steps cost: the change of q at switch and end where they are halved, in a few of the runs
     """
 
@@ -41,6 +42,7 @@ class Runs:
     end: float
     step: tuple[float, float]
     step_error: float
+    cautions: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.status)

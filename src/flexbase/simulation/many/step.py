@@ -9,16 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from flexbase.control.measured import Measured
 from flexbase.control.null_space import Law
-from flexbase.dynamics.kinematics import Frames, forward, task_jacobian
+from flexbase.dynamics.kinematics import forward
 from flexbase.dynamics.motion import equation_of_motion, under_gain
 from flexbase.dynamics.rotation_vector import tip_error
 from flexbase.dynamics.variation import varied_frames
 from flexbase.model.digest import model_digest
 from flexbase.plant import Pose
-from flexbase.simulation.result import SETTLED
+from flexbase.simulation.observed import measured
 from flexbase.simulation.runge_kutta import BEGIN, END, MIDDLE, State, runge_kutta
+from flexbase.simulation.settling import SETTLED, error_size
 from flexbase.trace.algebra import (
     Matrix,
     Scalar,
@@ -26,8 +26,6 @@ from flexbase.trace.algebra import (
     absolute,
     larger,
     ldl,
-    matvec,
-    norm,
     scale,
     select,
     smaller,
@@ -82,7 +80,7 @@ class Step:
         first, error, pivots = self._answer(law, values, when[BEGIN], q, rates)
         joints, speeds = runge_kutta(slope, (q, rates), step, (rates, first))
 
-        size = self.size(error)
+        size = error_size(error, self.goal.arm.task.rows)
         for pivot in pivots:
             least = smaller(least, pivot)
         for rate in rates:
@@ -104,34 +102,15 @@ class Step:
         arm = self.goal.arm
         frames = varied_frames(arm, forward(arm.mechanism, q), values)
         error = tip_error(frames, arm.task, self.goal.target)
-        torque = law.torque(self._seen(frames, values, time, q, rates, error))
+        seen = measured(arm, frames, time, q, rates, error)
+        felt = seen._replace(  # factors on a controller's gains act here, on the tip alone
+            tip_error=scale(values.get("task_stiffness", 1.0), seen.tip_error),
+            tip_rate=scale(values.get("task_damping", 1.0), seen.tip_rate),
+        )
+        torque = law.torque(felt)
         M, force = equation_of_motion(arm, frames, q, rates, torque, self.goal.equilibrium.tolist(), varied=values)
         unit, pivots = ldl(under_gain(arm, M, self.E, values.get("compensation", 1.0)))
         return solve_ldl(unit, pivots, force), error, pivots
-
-    def _seen(
-        self, frames: Frames, values: dict[str, Scalar], time: Scalar, q: Vector, rates: Vector, error: Vector
-    ) -> Measured:
-        """What the controller sees. Factors on its gains act here, on the tip alone."""
-        arm = self.goal.arm
-        tip_rate = matvec(task_jacobian(frames, arm.task.indices), rates)
-        return Measured(
-            time,
-            q[arm.m :],
-            rates[arm.m :],
-            scale(values.get("task_stiffness", 1.0), error),
-            scale(values.get("task_damping", 1.0), tip_rate),
-        )
-
-    def size(self, error: Vector) -> Scalar:
-        """Length of the tip error: positions in m, or rotations in rad where larger."""
-        rows = self.goal.arm.task.rows
-        sizes = [
-            norm([entry for entry, row in zip(error, rows, strict=True) if row.startswith("r") == turns])
-            for turns in (False, True)
-            if any(row.startswith("r") == turns for row in rows)
-        ]
-        return sizes[0] if len(sizes) == 1 else larger(*sizes)
 
     @property
     def recipe(self) -> str:

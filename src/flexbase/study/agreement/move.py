@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from flexbase.model.sensing import Sensing
-from flexbase.simulation.hardware.result import Push, SampledRun
-from flexbase.simulation.hardware.run import simulate_sampled
+from flexbase.simulation import Push, SampledMove, SampledRun, simulate_sampled
 from flexbase.study.agreement import nudge as agreement_nudge
 from flexbase.study.agreement.case import Case, Outcome
 
@@ -66,12 +65,8 @@ def drive(case: Case) -> SampledRun:
         case.controller,
         joints + rng.uniform(-APART, APART, arm.n),
         pose=case.pose,
-        switch=SWITCH,
-        end=END,
         push=Push(tuple((FORCE / np.linalg.norm(force) * force).tolist()), PUSH, LENGTH),
-        engine="mujoco",
-        tolerance=AT_REST,
-        seed=case.number,
+        move=SampledMove(switch=SWITCH, end=END, engine="mujoco", tolerance=AT_REST, seed=case.number),
     )
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from flexbase.checks import Array
-from flexbase.simulation.hardware.loop import Loop
+from flexbase.simulation.hardware.loops import SampledLoops
 from flexbase.simulation.plants.mujoco_held import MujocoHeld
 from flexbase.study.agreement.case import Case, Outcome
 
@@ -30,7 +30,7 @@ def watch(case: Case, nudge: float = NUDGE, longest: float = LONGEST) -> Outcome
     sensing, goal = case.controller.sensing, case.pose
     direction = np.random.default_rng([case.number, 7]).standard_normal(goal.arm.N)
     start = (goal.q + nudge * direction / np.linalg.norm(direction))[None]
-    loop = Loop([case.controller], [goal], MujocoHeld([goal], start, sensing), start=start)
+    loop = SampledLoops([case.controller], [goal], MujocoHeld([goal], start, sensing), start=start)
     samples = max(16, round(WINDOW * sensing.rate))
     still = np.zeros((samples, goal.arm.k))
     sizes: list[float] = []

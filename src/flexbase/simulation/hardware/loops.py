@@ -13,11 +13,10 @@ from flexbase.errors import InputError
 from flexbase.plant import Pose
 from flexbase.sampled.controller import SampledController
 from flexbase.simulation.hardware.drives import Drives
+from flexbase.simulation.hardware.laws import Settling, Tracking
 from flexbase.simulation.hardware.senses import Senses
-from flexbase.simulation.laws import Settling, Tracking
 from flexbase.simulation.plants.physics import Physics
-
-FASTEST = 1e3  # rad/s or m/s of a joint: beyond, the motion has diverged
+from flexbase.simulation.settling import FASTEST
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +29,7 @@ class Record:
     torque: Array
 
 
-class Loop:
+class SampledLoops:
     """Runs that share their arm's structure, their sensing and their clock. Mutable: `go` moves it on."""
 
     def __init__(
@@ -41,19 +40,20 @@ class Loop:
         *,
         start: Array,
         tracking: Tracking | None = None,
-        tracked: int = 0,
         seed: int = 0,
     ) -> None:
-        """start : joints, shape (runs, N), at rest; tracking : in place of the controllers for the first `tracked`."""
+        """start : joints, shape (runs, N), at rest; tracking : in place of the controllers for as long as it says."""
         self._sensing, arm = controllers[0].sensing, goals[0].arm
         check_causal(controllers)
         m = arm.m
         holding = np.array([_holding(one, goal.q) for one, goal in zip(controllers, goals, strict=True)])
-        before = np.array([_holding(one, q) for one, q in zip(controllers, start, strict=True)]) if tracked else holding
+        before = (
+            np.array([_holding(one, q) for one, q in zip(controllers, start, strict=True)]) if tracking else holding
+        )
         self._settling = Settling(controllers, np.stack([goal.q[m:] for goal in goals]), holding)
         self._senses = Senses(arm, self._sensing, len(goals), seed)
         self._drives = Drives(self._sensing, before)
-        self._physics, self._tracking, self._tracked = physics, tracking, tracked
+        self._physics, self._tracking = physics, tracking
         self.alive = np.ones(len(goals), dtype=bool)
         self.ended = np.full(len(goals), -1)  # sample at which a run diverged
         self.sample = 0
@@ -77,7 +77,7 @@ class Loop:
         self.ended[fast & self.alive] = self.sample
         self.alive &= ~fast
         tip, joints, accelerations = self._senses.read(seen)
-        if self.sample < self._tracked and self._tracking is not None:
+        if self._tracking is not None and self.sample < self._tracking.samples:
             command = self._tracking.torque(self.sample * self._sensing.step, joints)
         else:
             command = self._settling.torque(tip, joints, accelerations)
