@@ -11,11 +11,11 @@ from flexbase.control.joint_tracking import BANDWIDTH
 from flexbase.control.trajectories import LAWS
 from flexbase.errors import InputError
 from flexbase.requests import asked
+from flexbase.sampled.controller import SELF_MOTION
 from flexbase.simulation.plants.engines import ENGINES
 from flexbase.simulation.settling import SETTLED
 
 LARGEST = 1_000_000  # samples of a run
-SELF_MOTION = 20.0  # rad/s of a redundant arm's self-motion: below the base, so that it hardly drives it
 SAMPLED_BANDWIDTH = 20.0  # rad/s of joint tracking: 40 is unstable at 1 kHz in the start pose of the paper's move
 TOLERANCE = 1e-8  # rad or m of a joint
 
