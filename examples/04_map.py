@@ -5,8 +5,6 @@ from pathlib import Path
 import numpy as np
 
 import flexbase as fb
-from flexbase.report.plot import save_plot
-from flexbase.sweeps import save_csv
 
 plant = fb.load("ueda2003")
 chart = fb.sweep(plant, measures=["robustness", "compensability"], over="tip", shape=(200, 200))
@@ -34,7 +32,7 @@ print(f"\nWith a compensator for one pose:\n{fb.summary(change)}")
 
 out = Path("out/examples")
 out.mkdir(parents=True, exist_ok=True)
-save_csv(chart, out / "map.csv")
-save_plot(chart, out / "map.png")
-save_plot(change, out / "change.png")  # with plotly, a name that ends in .html gives an interactive page
+fb.save_csv(chart, out / "map.csv")
+fb.save_plot(chart, out / "map.png")
+fb.save_plot(change, out / "change.png")  # with plotly, a name that ends in .html gives an interactive page
 print(f"\nWritten to {out}: map.csv, map.png, change.png")

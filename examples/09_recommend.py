@@ -3,10 +3,6 @@
 from pathlib import Path
 
 import flexbase as fb
-from flexbase.model.sensing import Sensing
-from flexbase.sampled.verdict import hardware_verdict
-from flexbase.study.running.recommend import recommend
-from flexbase.synthesis import controller_for
 
 # The paper's pose: ideal acceleration makes the plant positive real ...
 pose = fb.load("ueda2003").at_tip([0.33, -0.25])
@@ -16,10 +12,11 @@ print(f"ideal loop: positive real with E is {fb.modes(pose, compensator).positiv
 # ... and one sample of delay on either side takes it away, at the rates that robots have.
 for rate in (1000.0, 4000.0):
     for method in ("none", "exact", "robust"):
-        print(hardware_verdict(controller_for(pose, method, Sensing(rate=rate)), brief=True).summary())
+        controller = fb.make_controller(pose, method, fb.Loop(sensing=fb.Sensing(rate=rate)))
+        print(fb.hardware_verdict(controller, brief=True).summary())
 
 # Six lines to act on, for the paper's arm, a gantry arm and a UR5e on its mobile platform.
 gantry = fb.load(Path(__file__).with_name("gantry.toml"))
 for here in (pose, gantry.at_tip([0.6, 0.3, 0.3]), fb.load("ur5e-platform").at([0.0, -1.2, 1.6, -0.4, 1.5, 0.0])):
     print(f"\n{here.plant.name} at {here.tip.round(3).tolist()}")
-    print(recommend(here, methods=("none", "coprime", "robust")).summary())
+    print(fb.recommend(here, methods=("none", "coprime", "robust")).summary())

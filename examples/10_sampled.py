@@ -1,22 +1,17 @@
 """The loop as hardware runs it: the paper's gain at 1 kHz with one sample of delay, and a controller made for that."""
 
-from dataclasses import replace
-
 import numpy as np
 
 import flexbase as fb
-from flexbase.model.sensing import TYPICAL
-from flexbase.sampled.controller import pd_with_gain
-from flexbase.synthesis import controller_for
 
 plant = fb.load("ueda2003")
 start, goal = plant.at_tip([0.33, 0.25]), plant.at_tip([0.33, -0.25])
 printed = np.array([[0.12, 0.079], [0.079, -0.15]])
-real = replace(TYPICAL, encoder_counts=2.0**18, task_noise=5e-6, torque_limit=(500.0, 500.0))
+real = fb.Sensing(encoder_counts=2.0**18, task_noise=5e-6, torque_limit=(500.0, 500.0))
 push = fb.Push((50.0, 0.0), start=0.45, duration=0.02)
 
-papers = pd_with_gain(goal, real, goal.arm.gains, printed, "the paper's E")
-ours = controller_for(goal, "coprime", real)
+papers = fb.make_controller(goal, loop=fb.Loop(fb.Gain(printed), sensing=real))
+ours = fb.make_controller(goal, "coprime", fb.Loop(sensing=real))
 for controller in (papers, ours):
     for engine in ("builtin", "mujoco"):
         move = fb.SampledMove(switch=0.15, end=0.8, engine=engine)

@@ -20,9 +20,15 @@ from flexbase.linear.passivity.verdict import Verdict
 from flexbase.linear.second_order import SecondOrder
 from flexbase.measures import MEASURES
 from flexbase.measures.manipulability import Ellipsoid, Manipulability, manipulability
-from flexbase.model.loop import Loop
+from flexbase.model.loop import Gain, Loop
+from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Plant, Pose, load
+from flexbase.sampled.changes import Changed, changed_pose, eight_changes
+from flexbase.sampled.controller import SampledController
+from flexbase.sampled.figures import FIGURES
+from flexbase.sampled.files import load_controller, save_controller
+from flexbase.sampled.verdict import HardwareVerdict, hardware_verdict
 from flexbase.simulation import (
     Move,
     Moves,
@@ -38,33 +44,52 @@ from flexbase.simulation import (
 )
 from flexbase.simulation.plants.mjcf import to_mjcf
 from flexbase.study.agreement.study import Agreement, agreement_study
+from flexbase.study.describe import Description, describe
 from flexbase.study.layout.layout import Layout, best_layout
 from flexbase.study.layout.targets import read_targets
 from flexbase.study.montecarlo import Criterion, Fixed, Lognormal, Normal, Probability, Uniform, montecarlo
 from flexbase.study.postures.posture import Postures, best_posture
 from flexbase.study.robust_configurations.curves import RobustCurves, robust_curves
 from flexbase.study.robust_configurations.points import RobustPoints, robust_points
-from flexbase.sweeps import difference, open_dataset, summary, sweep
+from flexbase.study.running.as_it_runs import AsItRuns, as_it_runs
+from flexbase.study.running.comparison import Comparison, compare
+from flexbase.study.running.hardware_map import hardware_map, hardware_path
+from flexbase.study.running.hardware_study import HardwareStudy, Setting, hardware_study
+from flexbase.study.running.recommend import Recommendation, recommend
+from flexbase.study.running.region import Region, region
+from flexbase.study.running.safe_gain import SafeGain, safe_gain
+from flexbase.sweeps import difference, open_dataset, save_csv, save_netcdf, summary, sweep
+from flexbase.synthesis import HARDWARE_METHODS
+from flexbase.synthesis.make import make_controller
 
 __version__ = "0.1.0"
 
 __all__ = [
-    "MEASURES",
-    "METHODS",
     "Agreement",
+    "AsItRuns",
     "Certificate",
+    "Changed",
+    "Comparison",
     "Compensator",
     "Criterion",
+    "Description",
     "Ellipsoid",
+    "FIGURES",
     "Fixed",
     "FlexbaseError",
     "FlexbaseWarning",
+    "Gain",
     "Gains",
+    "HARDWARE_METHODS",
+    "HardwareStudy",
+    "HardwareVerdict",
     "Infeasible",
     "InputError",
     "Layout",
     "Lognormal",
     "Loop",
+    "MEASURES",
+    "METHODS",
     "Manipulability",
     "MissingExtra",
     "Mode",
@@ -77,34 +102,58 @@ __all__ = [
     "Postures",
     "Probability",
     "Push",
+    "Recommendation",
+    "Region",
     "RobustCurves",
     "RobustPoints",
     "Run",
     "Runs",
+    "SafeGain",
+    "SampledController",
     "SampledMove",
     "SampledRun",
     "SecondOrder",
+    "Sensing",
+    "Setting",
     "SingularArm",
     "Uniform",
     "Unreachable",
     "Verdict",
     "__version__",
     "agreement_study",
+    "as_it_runs",
     "best_layout",
     "best_posture",
+    "changed_pose",
+    "compare",
+    "describe",
     "design",
     "difference",
+    "eight_changes",
+    "hardware_map",
+    "hardware_path",
+    "hardware_study",
+    "hardware_verdict",
     "linearise",
     "load",
     "load_compensator",
+    "load_controller",
+    "make_controller",
     "manipulability",
     "modes",
     "montecarlo",
     "open_dataset",
     "plot",
     "read_targets",
+    "recommend",
+    "region",
     "robust_curves",
     "robust_points",
+    "safe_gain",
+    "save_controller",
+    "save_csv",
+    "save_netcdf",
+    "save_plot",
     "simulate",
     "simulate_many",
     "simulate_sampled",
@@ -117,9 +166,9 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """`fb.plot` on first use: drawing imports matplotlib, which takes most of a second."""
-    if name == "plot":
-        from flexbase.report.plot import plot
+    """`fb.plot` and `fb.save_plot` on first use: drawing imports matplotlib, which takes most of a second."""
+    if name in ("plot", "save_plot"):
+        from flexbase.report import plot
 
-        return plot
+        return getattr(plot, name)
     raise AttributeError(f"module 'flexbase' has no attribute {name!r}")

@@ -14,7 +14,7 @@ from flexbase.report.figures.region import draw_validity
 from flexbase.sampled.controller import pd_with_gain
 from flexbase.sampled.verdict import hardware_verdict
 from flexbase.study.running.comparison import compare
-from flexbase.study.running.region import SAFE, STABLE, UNSTABLE, region_of, validity
+from flexbase.study.running.region import SAFE, STABLE, UNSTABLE, region, validity
 from flexbase.study.running.safe_gain import safe_gain
 from flexbase.synthesis import controller_for
 
@@ -89,5 +89,5 @@ def test_region_by_single_verdicts(paper_pose: fb.Pose) -> None:
 
 def test_a_method_that_is_pd_with_e_keeps_e_alone(paper_pose: fb.Pose) -> None:
     small = replace(FAST, rate=2000.0)
-    kept = region_of(paper_pose, "exact", small, half_width=0.01, shape=(2, 2))
+    kept = region(paper_pose, "exact", small, half_width=0.01, shape=(2, 2))
     assert kept.what == "E"

@@ -36,7 +36,7 @@ from flexbase.study.montecarlo import Probability, is_study
 from flexbase.study.postures.posture import Postures
 from flexbase.study.robust_configurations.curves import RobustCurves
 from flexbase.study.robust_configurations.points import RobustPoints
-from flexbase.study.running.region import Validity
+from flexbase.study.running.region import Region
 from flexbase.sweeps.answers.chart import Chart
 
 PAGE = ".html"
@@ -68,7 +68,7 @@ plot.register(RobustCurves)(styled()(draw_robust_curves))
 plot.register(RobustPoints)(styled()(draw_robust_points))
 plot.register(Layout)(styled()(draw_layout))
 plot.register(Probability)(styled()(draw_probability))
-plot.register(Validity)(styled()(draw_validity))
+plot.register(Region)(styled()(draw_validity))
 
 
 def save_plot(result: object, path: str | Path) -> None:

@@ -20,7 +20,7 @@ from flexbase.cli.terminal.verdicts import tables
 from flexbase.errors import InputError
 from flexbase.plant import load
 from flexbase.study.running.comparison import compare
-from flexbase.study.running.region import region_of
+from flexbase.study.running.region import region
 from flexbase.study.running.safe_gain import safe_gain
 from flexbase.synthesis import HARDWARE_METHODS
 
@@ -48,14 +48,14 @@ def hardware(
     loop: GainOptions = GainOptions(),  # noqa: B008
     run: SensingOptions = SensingOptions(),  # noqa: B008
     safe_gain_: Annotated[bool, Parameter("--safe-gain", help="the highest safe gain with each method")] = False,
-    region: Annotated[bool, Parameter(help="where the first method's controller stays valid")] = False,
+    region_: Annotated[bool, Parameter("--region", help="where the first method's controller stays valid")] = False,
     half_width: Annotated[float, option(number, "M", "of the region, 0.15 if left out [m or rad]")] = 0.15,
     out: Out = None,
     json: Json = False,
 ) -> None:
     """Every controller in the sampled loop: margins, changed robots, stiffness."""
-    check_out(out, (".png", ".svg", ".pdf", ".json") if region else (".json",))
-    if region and not method:
+    check_out(out, (".png", ".svg", ".pdf", ".json") if region_ else (".json",))
+    if region_ and not method:
         raise InputError("--region: --method is missing. Say whose controller, such as --method constant.")
     plant = load(robot)
     sensing, gains, at = run.sensing(plant), loop.gains(plant) or plant.arm.gains, pose.pose(plant)
@@ -67,8 +67,8 @@ def hardware(
             scales = [safe_gain(at, one.method, sensing, gains) for one in found.contenders if one.verdict]
             content["safe_gain"] = [one.to_dict() for one in scales]
             said += gain_tables(scales)
-        if region:
-            drawn = region_of(
+        if region_:
+            drawn = region(
                 at, method[0], sensing, gains, half_width, lambda done, total: progress("cells", done, total)
             )
             content["region"] = drawn.to_dict()

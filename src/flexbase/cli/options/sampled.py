@@ -12,11 +12,11 @@ from flexbase.cli.options.move import as_sampled
 from flexbase.cli.options.sensing import SensingOptions
 from flexbase.cli.options.words import Vector, numbers
 from flexbase.errors import InputError
-from flexbase.model.loop import Loop, LoopSpec, loop_on
+from flexbase.model.loop import Loop
 from flexbase.plant import Pose
-from flexbase.sampled.controller import SampledController, pd_with_gain
 from flexbase.simulation import Move, Push, SampledRun, simulate_sampled
-from flexbase.synthesis import HARDWARE_METHODS, controller_for
+from flexbase.synthesis import HARDWARE_METHODS
+from flexbase.synthesis.make import make_controller
 
 PUSH = 0.02  # s
 SAMPLED = Group("Sampled", sort_key=15)
@@ -47,12 +47,7 @@ class SampledOptions:
         """The move, by the method, else by task PD with the compensator, if any. Raises InputError, Infeasible."""
         times = as_sampled(move)
         push = None if self.disturb is None else Push(self.disturb, 0.5 * (times.switch + times.end), PUSH)
-        controller = self._controller(goal, loop_on(goal.arm, replace(loop, sensing=senses.sensing(goal.plant))))
-        return simulate_sampled(controller, start, push=push, move=times)
-
-    def _controller(self, goal: Pose, loop: LoopSpec) -> SampledController:
-        if loop.E is None:
-            return controller_for(goal, self.method or "none", loop.sensing, loop.gains)
-        if self.method is not None:
+        if loop.compensator is not None and self.method is not None:
             raise InputError("--method and --compensator are both given. Give one of them.")
-        return pd_with_gain(goal, loop.sensing, loop.gains, loop.E, "compensator")
+        controller = make_controller(goal, self.method, replace(loop, sensing=senses.sensing(goal.plant)))
+        return simulate_sampled(controller, start, push=push, move=times)

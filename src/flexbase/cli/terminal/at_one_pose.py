@@ -9,7 +9,7 @@ from rich.padding import Padding
 from rich.text import Text
 
 from flexbase.cli.terminal.show import BAD, GOOD, table
-from flexbase.study.running.region import Validity
+from flexbase.study.running.region import Region
 from flexbase.study.running.safe_gain import SafeGain
 
 
@@ -28,7 +28,7 @@ def gain_tables(found: Sequence[SafeGain]) -> list[RenderableType]:
     return ["", "  Highest gains (s Kp, root of s Kv), s from 0.001 to 100", table(columns, rows)]
 
 
-def region_lines(found: Validity) -> list[RenderableType]:
+def region_lines(found: Region) -> list[RenderableType]:
     """How far a constant controller carries."""
     good = found.safe_radius is not None
     lines = [line.strip() for line in found.summary().splitlines()]

@@ -9,12 +9,12 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch
 
 from flexbase.report.style import BLUE, INK, ORANGE, PALE, SKY, new_figure
-from flexbase.study.running.region import MEANINGS, Validity
+from flexbase.study.running.region import MEANINGS, Region
 
 COLOURS = (PALE, ORANGE, SKY, BLUE)  # by code; told apart in grey too
 
 
-def draw_validity(found: Validity) -> Figure:
+def draw_validity(found: Region) -> Figure:
     """Cells by their grade, the design tip, and the largest disks in which all cells are safe or stable."""
     figure = new_figure(5.2, 5.0)
     ax = figure.add_subplot()

@@ -32,7 +32,7 @@ SAME = 1e-3  # rad or m
 
 
 @dataclass(frozen=True, eq=False)
-class Validity:
+class Region:
     """Verdicts on one controller at tips around the pose it was made for.
 
     what : "E", the gain constant and the task law following the arm, or "controller", everything constant
@@ -91,7 +91,7 @@ def validity(
     shape: Sequence[int] = (25, 25),
     workers: int | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None,
-) -> Validity:
+) -> Region:
     """Verdicts in a window around the tip, over the first two task rows; the other rows stay where they are.
 
     With `gains`, E is what stays constant, and the task PD with these gains follows the arm; without, the whole
@@ -119,7 +119,7 @@ def validity(
     rows, units = pose.arm.task.rows, pose.arm.task.units
     what = "controller" if gains is None else "E"
     tip = float(pose.tip[0]), float(pose.tip[1])
-    return Validity(
+    return Region(
         pose.plant.name, controller.name, what, (rows[0], rows[1]), (units[0], units[1]), x, y, grade, tip, *radii
     )
 
@@ -161,7 +161,7 @@ def _shown(radius: float | None, unit: str) -> str:
     return "none" if radius is None else f"{radius:.3f} {unit}"
 
 
-def region_of(
+def region(
     pose: Pose,
     method: str,
     sensing: Sensing | None = None,
@@ -169,7 +169,7 @@ def region_of(
     half_width: float = 0.15,
     progress: Callable[[int, int], None] = lambda done, total: None,
     shape: Sequence[int] = (25, 25),
-) -> Validity:
+) -> Region:
     """`validity` of a method's controller at a pose: of its E where it is task PD with E, else of the whole controller.
 
     Raises InputError, Infeasible.
