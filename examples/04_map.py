@@ -25,7 +25,7 @@ compensated = fb.sweep(
     plant,
     measures=["robustness"],
     shape=(200, 200),
-    compensator=fb.design(pose, method="exact", natural_frequency=346.8),
+    loop=fb.design(pose, method="exact", natural_frequency=346.8),
 )
 change = fb.difference(chart, compensated)  # of what both have
 print(f"\nWith a compensator for one pose:\n{fb.summary(change)}")

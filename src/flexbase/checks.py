@@ -20,11 +20,14 @@ FARTHEST = 1e6  # rad or m of a joint or a target: beyond, sine and cosine lose 
 
 
 def finite_array(name: str, value: ArrayLike) -> Array:
-    """Return `value` as a read-only array of finite doubles. Raises InputError."""
+    """Return `value` as a read-only array of finite doubles: real numbers, no words, no truths. Raises InputError."""
     try:
-        array = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError) as fault:
-        raise InputError(f"{name}: {str(value)[:60]} is not an array of numbers.") from fault
+        given = np.asarray(value)
+    except ValueError as fault:  # rows of different lengths
+        raise InputError(f"{name}: {str(value)[:60]} is not an array of numbers. Give rows of one length.") from fault
+    if given.dtype.kind not in "iuf":
+        raise InputError(f"{name}: {str(value)[:60]} is not an array of numbers. Give real numbers.")
+    array = np.array(given, dtype=np.float64)
     if not np.all(np.isfinite(array)):
         raise InputError(f"{name}: {str(value)[:60]} is not finite. Give finite numbers.")
     array.flags.writeable = False

@@ -9,6 +9,7 @@ import pytest
 
 import flexbase as fb
 from flexbase.errors import InputError
+from flexbase.model.loop import Loop
 from flexbase.model.sensing import Sensing
 from flexbase.report.figures.region import draw_validity
 from flexbase.sampled.controller import pd_with_gain
@@ -29,7 +30,7 @@ def verdict_at(pose: fb.Pose, scale: float) -> tuple[bool, bool]:
 
 def test_safe_gain_is_a_border(paper_pose: fb.Pose) -> None:
     """Safe there and not 5 % above; the same for stable. [the search is to 4 %]"""
-    found = safe_gain(paper_pose, "none", FAST)
+    found = safe_gain(paper_pose, "none", Loop(sensing=FAST))
     assert found.safe is not None
     assert found.stable is not None
     assert found.safe <= found.stable
@@ -39,12 +40,12 @@ def test_safe_gain_is_a_border(paper_pose: fb.Pose) -> None:
     assert not verdict_at(paper_pose, 1.12 * found.stable)[0]
     assert found.safe_stiffness == pytest.approx(1e5 * found.safe, rel=1e-5)
     assert "safe up to" in found.summary()
-    slower = safe_gain(paper_pose, "none", Sensing())
+    slower = safe_gain(paper_pose, "none", Loop(sensing=Sensing()))
     assert slower.safe is None or slower.safe < found.safe
 
 
 def test_comparison_holds_what_each_method_says(paper_pose: fb.Pose) -> None:
-    found = compare(paper_pose, ["none", "exact"], FAST)
+    found = compare(paper_pose, ["none", "exact"], Loop(sensing=FAST))
     for one in found.contenders:
         assert one.verdict == hardware_verdict(controller_for(paper_pose, one.method, FAST))
     assert [row["method"] for row in found.to_dict()["methods"]] == ["none", "exact"]
@@ -56,7 +57,7 @@ def test_comparison_holds_what_each_method_says(paper_pose: fb.Pose) -> None:
 def test_a_method_without_answer_says_why() -> None:
     """exact needs one base joint: a reason, no crash."""
     pose = fb.load("ur5e-platform").at([0.3, -1.2, 1.5, -0.8, 0.4, 0.2])
-    (one,) = compare(pose, ["exact"], FAST).contenders
+    (one,) = compare(pose, ["exact"], Loop(sensing=FAST)).contenders
     assert one.verdict is None
     assert one.reason
     assert set(one.to_dict()) == {"method", "infeasible"}
@@ -89,5 +90,5 @@ def test_region_by_single_verdicts(paper_pose: fb.Pose) -> None:
 
 def test_a_method_that_is_pd_with_e_keeps_e_alone(paper_pose: fb.Pose) -> None:
     small = replace(FAST, rate=2000.0)
-    kept = region(paper_pose, "exact", small, half_width=0.01, shape=(2, 2))
+    kept = region(paper_pose, "exact", Loop(sensing=small), half_width=0.01, shape=(2, 2))
     assert kept.what == "E"

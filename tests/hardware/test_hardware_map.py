@@ -10,6 +10,7 @@ import pytest
 import flexbase as fb
 from flexbase.cli.terminal.path_table import HEADS, path_row
 from flexbase.errors import InputError, Unreachable
+from flexbase.model.loop import Loop
 from flexbase.model.sensing import Sensing
 from flexbase.sampled.verdict import hardware_verdict
 from flexbase.study.running import hardware_map as module
@@ -20,7 +21,7 @@ FAST = Sensing(rate=4000.0)
 
 
 def test_cells_are_single_verdicts(paper: fb.Plant) -> None:
-    found = hardware_map(paper, "none", (4, 3), sensing=FAST, bounds=(-0.1, 0.5, -0.4, 0.4), workers=1)
+    found = hardware_map(paper, "none", (4, 3), loop=Loop(sensing=FAST), bounds=(-0.1, 0.5, -0.4, 0.4), workers=1)
     assert found["spectral_radius"].dims == ("y", "x")
     reached = 0
     for j, y in enumerate(found["y"].values):
@@ -42,7 +43,7 @@ def test_cells_are_single_verdicts(paper: fb.Plant) -> None:
 
 def test_path_and_given_gain(paper: fb.Plant, paper_pose: fb.Pose) -> None:
     comp = fb.design(paper_pose, natural_frequency=346.8)
-    rows = hardware_path(paper, [[0.33, -0.25], [2.0, 2.0]], sensing=FAST, compensator=comp, workers=1)
+    rows = hardware_path(paper, [[0.33, -0.25], [2.0, 2.0]], loop=Loop(comp, sensing=FAST), workers=1)
     assert [row["status"] for row in rows] == ["ok", "out of reach"]
     assert rows[0]["spectral_radius"] == pytest.approx(0.99578, abs=1e-4)  # stable with E, 1.0018 without
     assert np.isnan(rows[1]["spectral_radius"])
@@ -76,7 +77,7 @@ def test_stopped_and_gone_on_with(paper: fb.Plant, tmp_path: Path, monkeypatch: 
 
 def test_a_path_s_table_has_a_heading_over_every_figure(paper: fb.Plant) -> None:
     """Stable, unstable, out of reach: as many cells as headings, and the figures of the single verdict."""
-    rows = hardware_path(paper, [[0.2, 0.4], [0.33, -0.25], [2.0, 2.0]], sensing=FAST, workers=1)
+    rows = hardware_path(paper, [[0.2, 0.4], [0.33, -0.25], [2.0, 2.0]], loop=Loop(sensing=FAST), workers=1)
     assert [row["status"] for row in rows] == ["ok", "unstable", "out of reach"]
     shown = [path_row(row) for row in rows]
     assert {len(one) for one in shown} == {len(HEADS)}
@@ -90,5 +91,5 @@ def test_a_path_s_table_has_a_heading_over_every_figure(paper: fb.Plant) -> None
 
 
 def test_a_map_says_what_was_judged(paper: fb.Plant) -> None:
-    found = hardware_map(paper, "none", (3, 3), sensing=FAST, workers=1)
+    found = hardware_map(paper, "none", (3, 3), loop=Loop(sensing=FAST), workers=1)
     assert found.attrs["judged"] == "method none at 4000 Hz"

@@ -159,7 +159,7 @@ def test_samples_are_counted_and_placed(paper):
 def test_differences_are_centred_and_mark_what_is_lost(paper, paper_pose):
     exact = fb.design(paper_pose, "exact", natural_frequency=346.8)
     asked = {"measures": ("frequency", "exact_gain"), "shape": (41, 41)}
-    figure = plot(fb.difference(fb.sweep(paper, **asked), fb.sweep(paper, **asked, compensator=exact)))
+    figure = plot(fb.difference(fb.sweep(paper, **asked), fb.sweep(paper, **asked, loop=exact)))
     changed, same = figure.axes[:2]
     mesh = changed.collections[0]
     assert mesh.norm.vmin == -mesh.norm.vmax

@@ -47,7 +47,7 @@ def results(paper, paper_pose):
     plane = fb.sweep(paper, ("robustness", "exact_gain"), shape=(61, 51))
     return {
         "plane": plane,
-        "change": fb.difference(plane, fb.sweep(paper, ("robustness",), shape=(61, 51), compensator=exact)),
+        "change": fb.difference(plane, fb.sweep(paper, ("robustness",), shape=(61, 51), loop=exact)),
         "slices": fb.sweep(paper, shape=(31, 25), vary={"payload": (0.0, 2.0, 3)}),
         "curve": fb.sweep(paper, ("robustness", "frequency"), axes=["x"], hold=[-0.25], shape=[80]),
         "samples": fb.sweep(paper, ("exact_gain",), over="samples", shape=[400]),

@@ -55,7 +55,7 @@ def results(paper, paper_pose, recursion, exact) -> dict[str, object]:
         "torque manipulability": fb.manipulability(paper_pose, exact, "torque"),
         "one axis": fb.manipulability(cart.at([0.1])),
         "chart": fb.sweep(paper, ("robustness", "compensability", "frequency"), shape=(41, 41)),
-        "compensated chart": fb.sweep(paper, shape=(41, 41), compensator=recursion),
+        "compensated chart": fb.sweep(paper, shape=(41, 41), loop=recursion),
         "joint chart": fb.sweep(paper, ("alignment",), over="joints", shape=(31, 31)),
         "empty chart": fb.sweep(paper, shape=(5, 5), bounds=(5.0, 6.0, 5.0, 6.0)),
     }

@@ -67,9 +67,9 @@ def test_a_monotone_criterion_has_a_known_probability(paper_pose: fb.Pose, desig
     rising = [shortage_with(paper_pose, designed.E, "payload", value) for value in payloads]
     assert np.all(np.diff(rising) > 0.0)
     border = brentq(lambda value: shortage_with(paper_pose, designed.E, "payload", value) - 0.01, 0.1, 5.9)
-    found = fb.montecarlo(paper_pose, {"payload": "uniform(0,6)"}, compensator=designed, samples=4096, sampling="sobol")
+    found = fb.montecarlo(paper_pose, {"payload": "uniform(0,6)"}, loop=designed, samples=4096, sampling="sobol")
     assert found.at_pose.value == pytest.approx(border / 6.0, abs=5e-4)
-    wider = fb.montecarlo(paper_pose, {"payload": "uniform(0,6)"}, compensator=designed, criteria=["robust=0.5"])
+    wider = fb.montecarlo(paper_pose, {"payload": "uniform(0,6)"}, loop=designed, criteria=["robust=0.5"])
     assert wider.at_pose.value == 1.0
 
 
@@ -80,7 +80,7 @@ def test_every_draw_is_judged_as_its_own_plant_is(paper_pose: fb.Pose, designed:
     E, gains = 1.15 * designed.E, paper_pose.arm.gains
     assert gains is not None
     criteria = ["definite", "robust=0.03", "stable", "loop=0.95", "frequency=:420"]
-    found = fb.montecarlo(paper_pose, vary, compensator=Gain(E), criteria=criteria, samples=150, seed=4)
+    found = fb.montecarlo(paper_pose, vary, loop=Gain(E), criteria=criteria, samples=150, seed=4)
     verdicts = []
     for draw in range(150):
         plant = paper_pose.plant
@@ -106,12 +106,12 @@ def test_every_draw_is_judged_as_its_own_plant_is(paper_pose: fb.Pose, designed:
 def test_no_variation_is_certain(paper_pose: fb.Pose, designed: fb.Compensator) -> None:
     """Without variation the probability is 0 or 1 and nothing between; a design for another pose fails."""
     still = {"stiffness": 1.0, "payload": "normal(0,0)"}
-    assert fb.montecarlo(paper_pose, still, compensator=designed).at_pose.value == 1.0
+    assert fb.montecarlo(paper_pose, still, loop=designed).at_pose.value == 1.0
     assert fb.montecarlo(paper_pose, still).at_pose.value == 0.0  # the bare arm is not robust here
     elsewhere = fb.design(paper_pose.plant.at_tip([0.45, -0.1]), method="exact")
     shaken = {"stiffness": "normal(1,0.15)", "payload": "uniform(0,3)"}
-    assert fb.montecarlo(paper_pose, shaken, compensator=elsewhere).at_pose.value < 0.01
-    assert fb.montecarlo(paper_pose, shaken, compensator=designed).at_pose.value > 0.5
+    assert fb.montecarlo(paper_pose, shaken, loop=elsewhere).at_pose.value < 0.01
+    assert fb.montecarlo(paper_pose, shaken, loop=designed).at_pose.value > 0.5
     chart = fb.montecarlo(paper_pose.plant, still, criteria=["frequency=280:"], shape=(20, 20), samples=3).dataset
     judged = chart["status"].values == 0
     assert set(np.unique(chart["probability"].values[judged])) == {0.0, 1.0}
@@ -122,7 +122,7 @@ def test_springs_do_not_decide_on_robustness_of_one_mode(paper_pose: fb.Pose, de
     """With one base joint a and b hang on masses alone; a tolerance at rounding still holds."""
     vary = {"stiffness": "normal(1,0.3)", "damping": "uniform(0,3)"}
     strict = ["robust=1e-12", "frequency=300:"]
-    found = fb.montecarlo(paper_pose, vary, compensator=designed, criteria=strict, samples=500).by_criterion
+    found = fb.montecarlo(paper_pose, vary, loop=designed, criteria=strict, samples=500).by_criterion
     assert found["robust"].value == 1.0
     assert 0.1 < found["frequency"].value < 0.9
 
@@ -239,7 +239,7 @@ def test_the_design_of_each_cell_is_that_of_a_pose(paper: fb.Plant) -> None:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", fb.FlexbaseWarning)  # algebraic loops of radius 1 and more
             E = fb.design(pose, method="exact")
-        assert fb.montecarlo(pose, vary, compensator=E, samples=400).at_pose.value == pytest.approx(
+        assert fb.montecarlo(pose, vary, loop=E, samples=400).at_pose.value == pytest.approx(
             float(chart["probability"][row, column]), abs=1.0 / 400
         )
     assert seen == {0, 4}
@@ -287,7 +287,7 @@ def test_results_speak(paper: fb.Plant, paper_pose: fb.Pose, designed: fb.Compen
     with xarray.open_dataset(tmp_path / "m.nc", engine="scipy") as kept:
         assert np.array_equal(kept["share"], found.dataset["share"])
         assert kept["criterion"].values.astype(str).tolist() == ["definite", "robust"]
-    one = fb.montecarlo(paper_pose, vary, compensator=designed, samples=40)
+    one = fb.montecarlo(paper_pose, vary, loop=designed, samples=40)
     one.save_csv(tmp_path / "p.csv")
     draws = np.genfromtxt(tmp_path / "p.csv", delimiter=",", names=True, deletechars="")
     assert draws["holds"].mean() == one.at_pose.value

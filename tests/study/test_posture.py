@@ -173,7 +173,7 @@ def test_a_compensator_is_used() -> None:
     """On the exact design's own branch the worst mode is at zero; on the other it is not."""
     plant = fb.load("ueda2003")
     E = fb.design(plant.at_tip([0.33, -0.25]), method="exact", natural_frequency=346.8)
-    found = best_posture(plant, [0.33, -0.25], compensator=E)
+    found = best_posture(plant, [0.33, -0.25], loop=E)
     assert (found.best.branch, found.compensated) == ("+", True)
     assert found.best.value == pytest.approx(0.0, abs=1e-12)
 

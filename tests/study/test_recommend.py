@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import flexbase as fb
+from flexbase.model.loop import Loop
 from flexbase.model.sensing import Sensing
 from flexbase.sampled.controller import SampledController, pd_with_gain
 from flexbase.sampled.noise import sensor_noise, torque_noise
@@ -73,7 +74,7 @@ def test_six_lines_at_the_papers_pose(paper_pose: fb.Pose) -> None:
     assert not found.declared
     assert found.changes["4000 Hz"] == "exact"
     assert "4000 Hz: exact" in found.lines()[5]
-    fast = recommend(paper_pose, methods=["none", "exact"], sensing=Sensing(rate=4000.0))
+    fast = recommend(paper_pose, methods=["none", "exact"], loop=Loop(sensing=Sensing(rate=4000.0)))
     assert fast.best is not None
     assert fast.best.method == "exact"
     assert fast.declared

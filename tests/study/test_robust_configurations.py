@@ -102,7 +102,7 @@ def test_a_compensator_moves_the_curve_through_its_pose() -> None:
     plant = fb.load("ueda2003")
     pose = plant.at_tip([0.33, -0.25])
     E = fb.design(pose, method="exact", natural_frequency=346.8)
-    found = robust_curves(plant, compensator=E)
+    found = robust_curves(plant, loop=E)
     gaps = [np.abs(np.angle(np.exp(1j * (one.joints - pose.q[1:])))).max(axis=1).min() for one in found.curves]
     assert min(gaps) < 0.02
     assert found.compensated

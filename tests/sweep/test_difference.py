@@ -20,7 +20,7 @@ def exact(paper_pose) -> fb.Compensator:
 
 @pytest.fixture(scope="module")
 def pair(paper, exact):
-    return fb.sweep(paper, **ASKED), fb.sweep(paper, **ASKED, compensator=exact)
+    return fb.sweep(paper, **ASKED), fb.sweep(paper, **ASKED, loop=exact)
 
 
 def test_values_are_those_of_the_scalar_path(paper, exact, pair):
@@ -73,7 +73,7 @@ def test_nothing_changes_against_itself(pair):
 
 def test_angles_differ_by_the_shorter_way(paper, exact):
     asked = {"measures": ["turn"], "shape": (31, 31)}
-    before, after = fb.sweep(paper, **asked), fb.sweep(paper, **asked, compensator=exact)
+    before, after = fb.sweep(paper, **asked), fb.sweep(paper, **asked, loop=exact)
     change = fb.difference(before, after).turn.values
     known = np.isfinite(change)
     assert np.abs(change[known]).max() <= np.pi
@@ -103,7 +103,7 @@ def test_what_is_no_sweep_is_refused(pair):
 
 def test_samples_are_compared_sample_by_sample(paper, exact):
     asked = {"over": "samples", "shape": [50]}
-    change = fb.difference(fb.sweep(paper, **asked), fb.sweep(paper, **asked, compensator=exact))
+    change = fb.difference(fb.sweep(paper, **asked), fb.sweep(paper, **asked, loop=exact))
     assert (change.status.values == OK).sum() > 10
     with pytest.raises(fb.InputError, match="q2 has 50 values"):
         fb.difference(fb.sweep(paper, **asked), fb.sweep(paper, **asked, seed=1))

@@ -19,9 +19,8 @@ import numpy as np
 from flexbase.checks import Array, positive_number
 from flexbase.control.measured import Measured
 from flexbase.errors import Infeasible, InputError
-from flexbase.linear.linearise import gain_of
 from flexbase.linear.second_order import SecondOrder
-from flexbase.model.loop import HasGain
+from flexbase.model.loop import Asked, loop_on
 from flexbase.plant import Pose
 from flexbase.trace.algebra import Vector, matvec, minus, plus, scale, transpose
 
@@ -81,7 +80,7 @@ class Sum:
 
 def null_space_damping(
     pose: Pose,
-    compensator: HasGain | None = None,
+    loop: Asked = None,
     *,
     frequency: float,
     damping_ratio: float = 0.7,
@@ -102,7 +101,7 @@ def null_space_damping(
         raise InputError(f'null space: the kind "{kind}" is unknown. Give one of {", ".join(KINDS)}.')
     omega = positive_number("null-space frequency", frequency, "rad/s")
     zeta = positive_number("null-space damping ratio", damping_ratio, "1")
-    E = gain_of(pose, compensator)
+    E = loop_on(pose.arm, loop).gain
     consistent = kind == "consistent" or (kind is None and shares_one_beta(pose, E))
     W = (_consistent if consistent else _blind_to_base)(pose, E)
     eye = np.eye(len(W))

@@ -10,8 +10,8 @@ from flexbase.checks import Array
 from flexbase.errors import InputError
 from flexbase.linear.reduced import reduce_arm
 from flexbase.linear.second_order import SecondOrder
-from flexbase.model.loop import HasGain, gain_on
-from flexbase.plant import Pose
+from flexbase.model.loop import Asked, loop_on
+from flexbase.plant import Pose, check_pose
 
 NEGLIGIBLE = 1e-12  # stiffness of the arm, relative, below which it counts as none
 
@@ -24,11 +24,6 @@ class ReducedArrays(NamedTuple):
     V: Array
     S: Array
     W: Array
-
-
-def gain_of(pose: Pose, compensator: HasGain | None) -> Array:
-    """E of a compensator, or zero. Raises InputError."""
-    return np.zeros((pose.arm.n, pose.arm.n)) if compensator is None else gain_on(pose.arm, compensator)
 
 
 def has_arm_stiffness(pose: Pose) -> bool:
@@ -65,16 +60,17 @@ def check_definite_inertia(pose: Pose, E: Array) -> Array:
     return M
 
 
-def linearise(pose: Pose, compensator: HasGain | None = None) -> SecondOrder:
+def linearise(pose: Pose, loop: Asked = None) -> SecondOrder:
     """The linear model about a pose: task force f to task displacement y.  [U03 eq 3-4, 11]
 
     Keeps base damping and stiffness, gravity stiffness and the compensator. Raises InputError if M - E is indefinite.
     """
+    check_pose(pose)
     arm = pose.arm
     rows = arm.task.rows
     B = np.vstack([np.zeros((arm.m, arm.k)), pose.J[:, arm.m :].T])
     return SecondOrder(
-        M=check_definite_inertia(pose, gain_of(pose, compensator)),
+        M=check_definite_inertia(pose, loop_on(pose.arm, loop).gain),
         D=pose.D,
         K=pose.K,
         B=B,

@@ -13,14 +13,13 @@ from flexbase.errors import FlexbaseWarning
 from flexbase.linear.linearise import (
     ReducedArrays,
     check_definite_inertia,
-    gain_of,
     is_reducible,
     linearise,
     reduced_arrays,
 )
 from flexbase.linear.quadratic_eigenproblem import Pole, RealShapes, damped_poles, real_shapes
 from flexbase.linear.reduced import RealMode, alignment, robustness
-from flexbase.model.loop import HasGain
+from flexbase.model.loop import Asked, Gain, loop_on
 from flexbase.plant import Pose, check_pose
 
 POSITIVE_REAL = 1e-8  # relative passivity shortage (1 - cos)/2 up to which a residue counts as positive  [theory §5]
@@ -117,7 +116,7 @@ class Modes:
         return "\n".join([*lines, f"  {verdict}. {self.caveat}"])
 
 
-def modes(pose: Pose, compensator: HasGain | None = None) -> Modes:
+def modes(pose: Pose, loop: Asked = None) -> Modes:
     """Vibration modes of a pose, with or without a compensator.
 
     Assumes distinct poles. Where stiffness and damping act on the base alone, the reduced form of theory §3 is exact
@@ -126,10 +125,10 @@ def modes(pose: Pose, compensator: HasGain | None = None) -> Modes:
     Warns where a mode is overdamped. Raises InputError if M - E is not positive definite.
     """
     check_pose(pose)
-    E = gain_of(pose, compensator)
+    E = loop_on(pose.arm, loop).gain
     check_definite_inertia(pose, E)
     analyse = _reduced if is_reducible(pose) else _full
-    found, rigid_mode, caveat = analyse(pose, E, compensator)
+    found, rigid_mode, caveat = analyse(pose, E)
     overdamped = [mode.label for mode in found if mode.damping_ratio >= 1.0]
     if overdamped:
         warnings.warn(
@@ -141,7 +140,7 @@ def modes(pose: Pose, compensator: HasGain | None = None) -> Modes:
     return Modes(pose, tuple(found), rigid_mode, verdict, caveat)
 
 
-def _reduced(pose: Pose, E: Array, _: HasGain | None) -> tuple[list[Mode], Array, str]:
+def _reduced(pose: Pose, E: Array) -> tuple[list[Mode], Array, str]:
     reduced, m = reduced_arrays(pose, E), pose.arm.m
     D, K = pose.D[:m, :m], pose.K[:m, :m]
     if m == 0:
@@ -158,9 +157,9 @@ def _reduced(pose: Pose, E: Array, _: HasGain | None) -> tuple[list[Mode], Array
     return found, reduced.R0, INDICATOR
 
 
-def _full(pose: Pose, E: Array, compensator: HasGain | None) -> tuple[list[Mode], Array, str]:
+def _full(pose: Pose, E: Array) -> tuple[list[Mode], Array, str]:
     """Full state space: damping and stiffness no longer act on the base alone."""
-    system, m = linearise(pose, compensator), pose.arm.m
+    system, m = linearise(pose, Gain(E)), pose.arm.m
     if m == 0:
         return [], reduced_arrays(pose, E).R0, RIGID
     poles = damped_poles(system.M, system.D, system.K)

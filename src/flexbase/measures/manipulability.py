@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from flexbase.checks import Array
-from flexbase.linear.linearise import check_definite_inertia, gain_of
+from flexbase.linear.linearise import check_definite_inertia
 from flexbase.measures.registry import Configuration, measure
-from flexbase.model.loop import HasGain
-from flexbase.plant import Pose
+from flexbase.model.loop import Asked, loop_on
+from flexbase.plant import Pose, check_pose
 from flexbase.trace.algebra import Matrix, Scalar, Vector, absolute, atan2, dot, ldl, norm, scale, select
 from flexbase.trace.eigen import symmetric_eigen
 
@@ -97,12 +97,13 @@ class Manipulability:
         )
 
 
-def manipulability(pose: Pose, compensator: HasGain | None = None, convention: str = "force") -> Manipulability:
+def manipulability(pose: Pose, loop: Asked = None, convention: str = "force") -> Manipulability:
     """Ellipsoids of the arm on its base held still, without and with a compensator.
 
     Raises InputError if M - E is not positive definite or the convention is unknown.
     """
-    E = gain_of(pose, compensator)
+    check_pose(pose)
+    E = loop_on(pose.arm, loop).gain
     check_definite_inertia(pose, E)
     return Manipulability(_ellipsoid(pose, np.zeros_like(E), convention), _ellipsoid(pose, E, convention))
 

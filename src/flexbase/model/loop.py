@@ -52,6 +52,7 @@ class Loop:
 class LoopSpec:
     """The loop on one arm, checked. Made by `loop_on`.
 
+    name : of the compensator's method, or what it is
     E : gain on the joint accelerations, exactly symmetric, shape (n, n), or None where none was given
     designed_at : arm joints that a compensator was designed at, shape (n,), or None
     given_gains : task gains, the project's own where none were given, or None where there are none at all
@@ -59,6 +60,7 @@ class LoopSpec:
     """
 
     arm: MountedArm
+    name: str
     E: Array | None
     designed_at: Array | None
     given_gains: Gains | None
@@ -95,6 +97,7 @@ def loop_on(arm: MountedArm, asked: Asked = None) -> LoopSpec:
     gains = arm.gains if loop.gains is None else checked_gains(loop.gains, arm.k)
     return LoopSpec(
         arm,
+        "none" if loop.compensator is None else str(getattr(loop.compensator, "method", "compensator")),
         None if loop.compensator is None else gain_on(arm, loop.compensator),
         _designed_at(arm, loop.compensator),
         gains,

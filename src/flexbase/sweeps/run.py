@@ -12,7 +12,7 @@ import numpy as np
 from flexbase.checks import choose
 from flexbase.errors import FlexbaseWarning, InputError, MissingExtra
 from flexbase.measures import MEASURES, Measure
-from flexbase.model.loop import HasGain, loop_on
+from flexbase.model.loop import Asked, loop_on
 from flexbase.plant import Plant, check_plant
 from flexbase.sweeps.caveats import check_measures
 from flexbase.sweeps.cells.axis import block_shape, boxes
@@ -44,7 +44,7 @@ def sweep(
     axes: Sequence[str] = (),
     hold: Sequence[float] = (),
     vary: Mapping[str, Range] | None = None,
-    compensator: HasGain | None = None,
+    loop: Asked = None,
     sampling: str = RANDOM,
     seed: int = 0,
     engine: str = AUTO,
@@ -78,7 +78,7 @@ def sweep(
     chosen = tuple(choose("measure", name, MEASURES) for name in dict.fromkeys(names))
     check_measures(plant, chosen, "map")
     place = _place(plant, over, shape, bounds, branch, axes, hold, dict(vary or {}), sampling, seed)
-    E = loop_on(plant.arm, compensator).E
+    E = loop_on(plant.arm, loop).E
     if store is None:
         chosen += _companions(plant, chosen)
     question = _question(plant, chosen, place, tuple(vary or {}), E)

@@ -22,8 +22,7 @@ def make_controller(pose: Pose, method: str | None = None, loop: Asked = None, *
     check_pose(pose)
     meant = loop_on(pose.arm, loop)
     if method is None and not options:
-        name = "none" if meant.E is None else "compensator"
-        return pd_with_gain(pose, meant.sensing, meant.gains, meant.E, name)
+        return pd_with_gain(pose, meant.sensing, meant.gains, meant.E, meant.name)
     if meant.E is not None:
         raise InputError("method: a compensator is given too, and a method brings its own. Give one of them.")
     return controller_for(pose, method or "none", meant.sensing, meant.gains, **options)

@@ -19,6 +19,7 @@ from flexbase.cli.terminal.out import PICTURES, OutFile, check_out, written
 from flexbase.cli.terminal.show import put
 from flexbase.compensators import design as design_at
 from flexbase.errors import Infeasible
+from flexbase.model.loop import Loop
 from flexbase.plant import load
 from flexbase.study.running.as_it_runs import as_it_runs
 
@@ -63,7 +64,7 @@ def design(
     kinds = ["rad" if kind == "revolute" else "m" for kind in plant.arm.mechanism.joint_types[plant.arm.m :]]
     if out is not None:
         found.save(out)
-    real = as_it_runs(at, found, sensing, gains)
+    real = as_it_runs(at, Loop(found, gains, sensing))
     put(document("design", {**found.to_dict(), **hardware.content(real)})) if json else put(
         *tables(found, units.common("inertia", kinds)), *hardware.lines(real), *written(out)
     )

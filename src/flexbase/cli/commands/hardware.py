@@ -18,6 +18,7 @@ from flexbase.cli.terminal.progress import progress_bar
 from flexbase.cli.terminal.show import put
 from flexbase.cli.terminal.verdicts import tables
 from flexbase.errors import InputError
+from flexbase.model.loop import Loop
 from flexbase.plant import load
 from flexbase.study.running.comparison import compare
 from flexbase.study.running.region import region
@@ -58,19 +59,17 @@ def hardware(
     if region_ and not method:
         raise InputError("--region: --method is missing. Say whose controller, such as --method constant.")
     plant = load(robot)
-    sensing, gains, at = run.sensing(plant), loop.gains(plant) or plant.arm.gains, pose.pose(plant)
+    meant, at = Loop(None, loop.gains(plant), run.sensing(plant)), pose.pose(plant)
     with progress_bar() as progress:
-        found = compare(at, method or None, sensing, gains)
+        found = compare(at, method or None, meant)
         content: dict[str, Any] = {"declared": run.declared(plant), **found.to_dict()}
         said, drawn = tables(found), None
         if safe_gain_:
-            scales = [safe_gain(at, one.method, sensing, gains) for one in found.contenders if one.verdict]
+            scales = [safe_gain(at, one.method, meant) for one in found.contenders if one.verdict]
             content["safe_gain"] = [one.to_dict() for one in scales]
             said += gain_tables(scales)
         if region_:
-            drawn = region(
-                at, method[0], sensing, gains, half_width, lambda done, total: progress("cells", done, total)
-            )
+            drawn = region(at, method[0], meant, half_width, lambda done, total: progress("cells", done, total))
             content["region"] = drawn.to_dict()
             said += region_lines(drawn)
     write_out(out, "hardware", drawn, content)

@@ -19,6 +19,7 @@ from flexbase.cli.terminal.document import document
 from flexbase.cli.terminal.out import OutFile, written
 from flexbase.cli.terminal.path_table import HEADS, path_row
 from flexbase.cli.terminal.show import put, table, title
+from flexbase.model.loop import Loop
 from flexbase.plant import load
 from flexbase.study.running.hardware_map import hardware_map, hardware_path
 from flexbase.sweeps import document as plain
@@ -54,8 +55,8 @@ def map_verdicts(
     """Stability, margins, changed robots and stiffness, each cell with a controller of its own."""
     check_map_out(out, resume)
     plant = load(robot)
-    given: dict[str, Any] = {"sensing": run.sensing(plant), "gains": loop.gains(plant), "branch": elbow}
-    given["compensator"] = compensator_of(plant, compensator)
+    meant = Loop(compensator_of(plant, compensator), loop.gains(plant), run.sensing(plant))
+    given: dict[str, Any] = {"loop": meant, "branch": elbow}
     if path is not None:
         rows = hardware_path(plant, tips_of(path), method, **given)
         shown = table(HEADS, [path_row(row) for row in rows], words=(0, 1))

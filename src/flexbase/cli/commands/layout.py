@@ -55,7 +55,7 @@ def layout(
     used = compensator_of(plant, compensator)
     given = read_targets(plant.arm.task, targets)
     found = best_layout(
-        plant, given, measure, goal=goal, along=along, turn=turn, within=within, branch=elbow, compensator=used
+        plant, given, measure, goal=goal, along=along, turn=turn, within=within, branch=elbow, loop=used
     )
     content = found.to_dict()
     write_out(out, "layout", found, content)

@@ -64,7 +64,7 @@ def probability(
         found = montecarlo(
             where,
             dict(vary),
-            compensator=used,
+            loop=used,
             redesign=redesign,
             criteria=criterion,
             samples=samples,

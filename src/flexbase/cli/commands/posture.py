@@ -52,7 +52,7 @@ def posture(
     plant = load(robot)
     used = compensator_of(plant, compensator)
     with blaming("--tip"):
-        found = best_posture(plant, tip, measure, branch=elbow, compensator=used)
+        found = best_posture(plant, tip, measure, branch=elbow, loop=used)
     content = found.to_dict()
     write_out(out, "posture", found, content)
     put(document("posture", content)) if json else put(*_tables(found), *written(out))

@@ -49,10 +49,10 @@ def rac(
     used = compensator_of(plant, compensator)
     found: RobustCurves | RobustPoints
     if plant.arm.k == 2 and count is None and not modes:
-        found = robust_curves(plant, axes, hold=hold, compensator=used)
+        found = robust_curves(plant, axes, hold=hold, loop=used)
         shown = curves(found)
     else:
-        found = robust_points(plant, modes or None, COUNT if count is None else count, compensator=used)
+        found = robust_points(plant, modes or None, COUNT if count is None else count, loop=used)
         shown = points(found)
     content = found.to_dict()
     write_out(out, "rac", found, content)

@@ -14,6 +14,7 @@ from flexbase.cli.terminal.document import document
 from flexbase.cli.terminal.out import OutFile, check_out, write_out, written
 from flexbase.cli.terminal.progress import progress_bar
 from flexbase.cli.terminal.show import put, title
+from flexbase.model.loop import Loop
 from flexbase.plant import load
 from flexbase.study.running.recommend import recommend
 
@@ -44,7 +45,7 @@ def recommend_controller(
     plant = load(robot)
     with progress_bar() as report:
         sensing = run.sensing(plant) if run.declared(plant) else None
-        found = recommend(pose.pose(plant), sensing=sensing, gains=loop.gains(plant), workers=None, progress=report)
+        found = recommend(pose.pose(plant), loop=Loop(None, loop.gains(plant), sensing), workers=None, progress=report)
     content = found.to_dict()
     write_out(out, "recommend", found, content)
     put(document("recommend", content)) if json else put(

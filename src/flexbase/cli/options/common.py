@@ -41,7 +41,7 @@ def blaming(option: str) -> Iterator[None]:
     try:
         yield
     except InputError as fault:
-        raise type(fault)(f"{option}: {str(fault).removeprefix('tip: ')}") from fault
+        raise type(fault)(f"{option}: {str(fault).removeprefix('tip: ').removeprefix('compensator: ')}") from fault
 
 
 Json = Annotated[bool, Parameter(help="one JSON document on stdout, nothing else")]

@@ -16,6 +16,7 @@ from flexbase.cli.terminal.digits import listed
 from flexbase.cli.terminal.show import facts
 from flexbase.control.compensator import Compensator, load_compensator
 from flexbase.errors import InputError
+from flexbase.model.loop import loop_on
 from flexbase.plant import Plant, Pose
 
 Robot = Annotated[str, Parameter(help="bundled name (see: flexbase robots) or path of a project file")]
@@ -65,6 +66,7 @@ def compensator_of(plant: Plant, path: Path | None) -> Compensator | None:
         return None
     with blaming("--compensator"):
         found = load_compensator(path)
+        loop_on(plant.arm, found)
     return found
 
 

@@ -46,7 +46,7 @@ def swept(
             axes=plane.axes,
             hold=plane.hold,
             vary=dict(plane.vary),
-            compensator=used,
+            loop=used,
             sampling=plane.sampling,
             seed=plane.seed,
             store=store,

@@ -21,31 +21,31 @@ from flexbase.linear.passivity.vibration import (
     vibration_of_system,
 )
 from flexbase.linear.second_order import SecondOrder
-from flexbase.model.loop import HasGain
+from flexbase.model.loop import Asked
 from flexbase.plant import Pose, check_pose
 
 HIDDEN = 1e-6  # of the response near one resonance alone: a shortage that deserves a word
 
 
-def verdict(model: Pose | SecondOrder, compensator: HasGain | None = None, bandwidth: float | None = None) -> Verdict:
+def verdict(model: Pose | SecondOrder, loop: Asked = None, bandwidth: float | None = None) -> Verdict:
     """Whether G(s) = s P(s), tip force to tip velocity, is positive real, over all frequencies at once.  [theory §5]
 
     Holds at any damping of base and joints, with gravity's stiffness, with rigid motions and with undamped modes:
     no residues, no frequency grid. By crossings of levels, to RESOLUTION of the largest response.
 
     model : a pose, or a system of your own with M > 0, D >= 0 and symmetric K
-    compensator : anything with a gain E; only with a pose
+    loop : a compensator, or anything with a gain E; only with a pose
     bandwidth : judge frequencies up to this one only [rad/s]
     Raises InputError if M - E is not positive definite, or the system is not of this kind.
     """
     band = (0.0, np.inf if bandwidth is None else positive_number("bandwidth", bandwidth, "rad/s"))
     if isinstance(model, SecondOrder):
-        if compensator is not None:
+        if loop is not None:
             raise InputError("compensator: given with a system. Take E from its M, or give a pose.")
         return _judged(None, vibration_of_system(_checked(model)), band)
     check_pose(model)
-    alone = None if is_reducible(model) else _judged(None, base_vibration(model, compensator), band)
-    return _judged(model, vibration_of(model, compensator), band, alone)
+    alone = None if is_reducible(model) else _judged(None, base_vibration(model, loop), band)
+    return _judged(model, vibration_of(model, loop), band, alone)
 
 
 def _judged(pose: Pose | None, vibration: Vibration, band: Interval, alone: Verdict | None = None) -> Verdict:

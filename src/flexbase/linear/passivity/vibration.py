@@ -13,10 +13,10 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from flexbase.checks import Array
-from flexbase.linear.linearise import check_definite_inertia, gain_of, is_reducible, linearise, reduced_arrays
+from flexbase.linear.linearise import check_definite_inertia, is_reducible, linearise, reduced_arrays
 from flexbase.linear.passivity.port import Port
 from flexbase.linear.second_order import SecondOrder
-from flexbase.model.loop import HasGain
+from flexbase.model.loop import Asked, loop_on
 from flexbase.plant import Pose
 
 STILL = 1e-12  # of the largest omega^2: a softer motion has no spring
@@ -92,23 +92,23 @@ class Vibration(NamedTuple):
         return np.asarray(self.c[:, free] @ np.linalg.solve(self.damping[np.ix_(free, free)], self.b[free]))
 
 
-def vibration_of(pose: Pose, compensator: HasGain | None = None) -> Vibration:
+def vibration_of(pose: Pose, loop: Asked = None) -> Vibration:
     """The response from tip force to tip displacement of a pose, taken apart.
 
     By the reduced form where stiffness and damping act on the base alone, else by the full matrices.
     Raises InputError if M - E is indefinite.
     """
     if is_reducible(pose):
-        return base_vibration(pose, compensator)
-    return vibration_of_system(linearise(pose, compensator))
+        return base_vibration(pose, loop)
+    return vibration_of_system(linearise(pose, loop))
 
 
-def base_vibration(pose: Pose, compensator: HasGain | None = None, damping: Array | None = None) -> Vibration:
+def base_vibration(pose: Pose, loop: Asked = None, damping: Array | None = None) -> Vibration:
     """The same with the stiffness and damping of the base alone, by the reduced form.  [theory §3]
 
     damping : instead of the base's own, shape (m, m)
     """
-    E, m, base = gain_of(pose, compensator), pose.arm.m, pose.arm.base
+    E, m, base = loop_on(pose.arm, loop).gain, pose.arm.m, pose.arm.base
     check_definite_inertia(pose, E)
     reduced = reduced_arrays(pose, E)
     carried = np.abs(pose.J[:, m:]) @ np.abs(reduced.W)

@@ -13,7 +13,7 @@ from flexbase.checks import Array, positive_number
 from flexbase.dynamics.inverse.newton import reach
 from flexbase.errors import InputError, Unreachable
 from flexbase.measures import Measure
-from flexbase.model.loop import HasGain
+from flexbase.model.loop import Asked
 from flexbase.model.task import check_branch
 from flexbase.plant import Plant
 from flexbase.study.layout.placement import make_placement
@@ -129,7 +129,7 @@ def best_layout(
     turn: bool = False,
     within: float | None = None,
     branch: str | None = None,
-    compensator: HasGain | None = None,
+    loop: Asked = None,
 ) -> Layout:
     """Where to move a set of tip targets, all together, so that the worst or mean of a measure over them is best.
 
@@ -146,7 +146,7 @@ def best_layout(
     branch : on which all targets are; each on its own best if left out
     Raises Unreachable where no place brings any target into reach; InputError, MissingExtra (extra `fast`).
     """
-    objective = make_objective(plant, measure, compensator)
+    objective = make_objective(plant, measure, loop)
     check_measures(plant, (objective.measure,), "layout")
     if goal not in GOALS:
         raise InputError(f'goal: "{goal}" is unknown. Give "worst" or "mean".')
@@ -170,7 +170,7 @@ def best_layout(
         placement.centre,
         _stations(objective, given.names, given.values, before),
         _stations(objective, given.names, placement.moved(given.values, shift), after),
-        compensator is not None,
+        objective.E is not None,
     )
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from flexbase.checks import choose
 from flexbase.errors import FlexbaseWarning, InputError, MissingExtra, nearest_name
 from flexbase.measures import MEASURES, Measure
-from flexbase.model.loop import HasGain, loop_on
+from flexbase.model.loop import Asked, loop_on
 from flexbase.model.mounted import MountedArm
 from flexbase.plant import Plant, Pose, check_plant
 from flexbase.study.montecarlo.collect import Progress, run_all, to_dataset
@@ -37,7 +37,7 @@ def montecarlo(
     where: Plant | Pose,
     vary: Mapping[str, Distribution | str | float],
     *,
-    compensator: HasGain | None = None,
+    loop: Asked = None,
     redesign: bool = False,
     criteria: Sequence[Criterion | str] = USUAL,
     samples: int = 1000,
@@ -59,7 +59,7 @@ def montecarlo(
 
     vary : a parameter's name -> its distribution, such as `"normal(1,0.15)"`; parameters are independent. Names as for
         `sweep`, those of a single joint included: `stiffness.q1`
-    compensator : its E, in every cell the same; without it the bare plant is judged
+    loop : a compensator, whose E is the same in every cell; without one the bare plant is judged
     redesign : instead, in each cell the exact design for the plant as it is (one base joint, k = n)
     criteria : all must hold. "definite" (M - E > 0), "robust" (every mode's shortage at most 0.01; "robust=0.05" for
         another), "stable" (`closed_loop_abscissa` < 0; slow), "loop" (`algebraic_loop_radius` < 1), or bounds on any
@@ -82,13 +82,13 @@ def montecarlo(
     asked = _distinct([read_criterion(one) for one in ([criteria] if isinstance(criteria, str) else criteria)])
     measures = _measures(asked)
     if redesign:
-        if compensator is not None:
+        if loop_on(plant.arm, loop).E is not None:
             raise InputError("redesign: a compensator is given too. Give one of them.")
         check_measures(plant, [MEASURES["exact_gain"]], "montecarlo")
     check_measures(plant, measures, "montecarlo")
     arm, place = _place(where, over, shape, bounds, branch, axes, hold)
     draws = draw(distributions, known, samples, sampling, seed)
-    E = loop_on(plant.arm, compensator).E
+    E = loop_on(plant.arm, loop).E
     question = Question(
         arm, measures, place.varied, place.held, tuple(vary), E, place.planar, place.side, redesigned=redesign
     )

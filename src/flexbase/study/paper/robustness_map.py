@@ -14,7 +14,7 @@ from flexbase.dynamics.inverse.two_joint_arm import two_joint_arm
 from flexbase.dynamics.kinematics import forward
 from flexbase.errors import InputError
 from flexbase.measures import MEASURES
-from flexbase.model.loop import HasGain, loop_on
+from flexbase.model.loop import Asked, loop_on
 from flexbase.plant import Plant
 from flexbase.sweeps.engine.evaluate import Engine
 from flexbase.sweeps.engine.question import Question
@@ -52,9 +52,7 @@ class RobustnessMap:
         return bool((self.smallest_inertia <= 0.0).any())
 
 
-def robustness_map(
-    plant: Plant, compensator: HasGain | None = None, shape: tuple[int, int] = (RINGS, SPOKES)
-) -> RobustnessMap:
+def robustness_map(plant: Plant, loop: Asked = None, shape: tuple[int, int] = (RINGS, SPOKES)) -> RobustnessMap:
     """w_1 over the workspace of a planar arm with two joints on a one-joint base, default branch, base at rest.
 
     Raises InputError for other arms.
@@ -72,7 +70,7 @@ def robustness_map(
     x, y = planar.shoulder[0] + radii * np.cos(angles), planar.shoulder[1] + radii * np.sin(angles)
     targets = np.column_stack([x.ravel(), y.ravel()])
     joints, _ = arm_angles_of_many(arm.mechanism, arm.task, arm.base.equilibrium, targets, arm.task.branch)
-    E = loop_on(plant.arm, compensator).E
+    E = loop_on(plant.arm, loop).E
     asked = (MEASURES["robustness"], MEASURES["turn"])
     block = Engine(Question(arm, asked, (0, 1), (0.0, 0.0), E=E)).run(np.ascontiguousarray(joints.T))
     frames = forward(arm.mechanism, (*arm.base.equilibrium.tolist(), *unstack(joints, 1)))

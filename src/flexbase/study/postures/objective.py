@@ -12,7 +12,7 @@ from flexbase.dynamics.inverse.posture_criteria import Criterion
 from flexbase.dynamics.inverse.starts import spread_starts
 from flexbase.errors import InputError
 from flexbase.measures import MEASURES, Measure
-from flexbase.model.loop import HasGain, loop_on
+from flexbase.model.loop import Asked, loop_on
 from flexbase.model.mounted import MountedArm
 from flexbase.plant import Plant, check_plant
 from flexbase.sweeps.engine.question import Question
@@ -95,7 +95,7 @@ class Objective:
         return criterion
 
 
-def make_objective(plant: Plant, measure: str, compensator: HasGain | None) -> Objective:
+def make_objective(plant: Plant, measure: str, loop: Asked) -> Objective:
     """The objective of a search, checked but for what the measure needs (`check_measures`). Raises InputError."""
     check_plant(plant)
     arm = plant.arm
@@ -105,7 +105,7 @@ def make_objective(plant: Plant, measure: str, compensator: HasGain | None) -> O
         raise InputError(f"measure {measure}: {why}. Give one of {', '.join(climbable())}.")
     if chosen.per_mode and arm.m == 0:
         raise InputError(f"measure {measure}: {plant.name} has a rigid base, no mode. Give manipulability.")
-    return Objective(arm, chosen, loop_on(arm, compensator).E)
+    return Objective(arm, chosen, loop_on(arm, loop).E)
 
 
 def climbable() -> list[str]:

@@ -15,7 +15,7 @@ from flexbase.dynamics.inverse.self_motion import climb, idle_joints
 from flexbase.dynamics.inverse.starts import spread_starts
 from flexbase.errors import SingularArm, Unreachable
 from flexbase.measures import Measure
-from flexbase.model.loop import HasGain
+from flexbase.model.loop import Asked
 from flexbase.model.task import check_branch
 from flexbase.plant import Plant, Pose
 from flexbase.study.layout.placement import Placement
@@ -101,7 +101,7 @@ def best_posture(
     measure: str = "robustness",
     *,
     branch: str | None = None,
-    compensator: HasGain | None = None,
+    loop: Asked = None,
     starts: int = STARTS,
 ) -> Postures:
     """The arm joints that reach a tip target and make a measure best, over all branches or on one.
@@ -116,7 +116,7 @@ def best_posture(
     starts : of a redundant arm, on each side of the elbow
     Joint limits are not looked at. Raises Unreachable, InputError, MissingExtra (extra `fast`).
     """
-    objective = make_objective(plant, measure, compensator)
+    objective = make_objective(plant, measure, loop)
     check_measures(plant, (objective.measure,), "posture")
     arm = plant.arm
     wanted = check_length("tip", target, arm.k, f"one for each task row, {' '.join(arm.task.rows)}")
@@ -136,7 +136,7 @@ def best_posture(
         )
     found.sort(key=lambda one: -objective.sign * one.value)
     usual = _usual(plant, objective, wanted, branch)
-    return Postures(plant, wanted, objective.measure, tuple(found), usual, compensator is not None)
+    return Postures(plant, wanted, objective.measure, tuple(found), usual, objective.E is not None)
 
 
 def optima(objective: Objective, target: Array, side: str, count: int) -> list[Array]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from flexbase.checks import Array
 from flexbase.errors import InputError
-from flexbase.model.loop import HasGain
+from flexbase.model.loop import Asked
 from flexbase.plant import Plant
 from flexbase.study.robust_configurations.continuation import Equation, follow, near_polyline
 from flexbase.study.robust_configurations.misalignment import Misalignment, make_misalignment, tips_of
@@ -105,7 +105,7 @@ def robust_curves(
     hold: Sequence[float] = (),
     bounds: Sequence[float] | None = None,
     cells: int = CELLS,
-    compensator: HasGain | None = None,
+    loop: Asked = None,
 ) -> RobustCurves:
     """Curves over two arm joints on which a mode is positive real: the zeros of `turn`.  [theory §4]
 
@@ -121,7 +121,7 @@ def robust_curves(
     """
     from contourpy import contour_generator  # comes with matplotlib
 
-    equations = make_misalignment(plant, compensator)
+    equations = make_misalignment(plant, loop)
     arm = plant.arm
     if arm.k != 2:
         raise InputError(
@@ -155,7 +155,7 @@ def robust_curves(
             joints[:, place] = found.points
             curves.append(RobustCurve(mode + 1, joints, tips_of(plant, joints), found.closed))
     curves.sort(key=lambda one: (one.mode, -one.length))
-    return RobustCurves(plant, (names[0], names[1]), tuple(curves), worst, compensator is not None)
+    return RobustCurves(plant, (names[0], names[1]), tuple(curves), worst, equations.E is not None)
 
 
 def _equation(equations: Misalignment, mode: int, rest: Array, place: list[int]) -> Equation:

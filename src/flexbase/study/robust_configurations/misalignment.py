@@ -14,9 +14,9 @@ from flexbase.errors import InputError
 from flexbase.linear.reduced import misalignment
 from flexbase.measures import MEASURES
 from flexbase.model.digest import model_digest
-from flexbase.model.loop import HasGain, loop_on
+from flexbase.model.loop import Asked, loop_on
 from flexbase.model.mounted import MountedArm
-from flexbase.plant import Plant
+from flexbase.plant import Plant, check_plant
 from flexbase.sweeps.caveats import check_measures
 from flexbase.sweeps.cells.parameters import configuration_of
 from flexbase.trace.algebra import Scalar, Vector, mul, norm, or_one, sub, unstack
@@ -72,8 +72,9 @@ def sine(a: Vector, b: Vector) -> Scalar:
     return sub(mul(b[0], a[1]), mul(b[1], a[0])) / or_one(mul(norm(a), norm(b)))
 
 
-def make_misalignment(plant: Plant, compensator: HasGain | None) -> Misalignment:
+def make_misalignment(plant: Plant, loop: Asked) -> Misalignment:
     """The equations for a plant, checked. Raises InputError where robust configurations have no meaning."""
+    check_plant(plant)
     arm = plant.arm
     if arm.m == 0:
         raise InputError(f"robust configurations: {plant.name} has a rigid base, no mode. Give one with base joints.")
@@ -83,7 +84,7 @@ def make_misalignment(plant: Plant, compensator: HasGain | None) -> Misalignment
             "positive, not on a line. Draw flexbase map."
         )
     check_measures(plant, (MEASURES["alignment"],), "rac")
-    return Misalignment(arm, loop_on(arm, compensator).E)
+    return Misalignment(arm, loop_on(arm, loop).E)
 
 
 def tips_of(plant: Plant, joints: Array) -> Array:

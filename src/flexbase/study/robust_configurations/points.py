@@ -14,7 +14,7 @@ from flexbase.checks import Array, check_length
 from flexbase.dynamics.inverse.newton import TipProblem, reach
 from flexbase.errors import InputError
 from flexbase.measures import MEASURES
-from flexbase.model.loop import HasGain
+from flexbase.model.loop import Asked
 from flexbase.plant import Plant
 from flexbase.study.robust_configurations.misalignment import Misalignment, make_misalignment, tips_of
 from flexbase.study.tables import write_rows
@@ -92,7 +92,7 @@ def robust_points(
     count: int = COUNT,
     *,
     bounds: Sequence[float] | None = None,
-    compensator: HasGain | None = None,
+    loop: Asked = None,
 ) -> RobustPoints:
     """Postures in which some modes, or all, are positive real at once: |a/|a| - b/|b|| below 1e-10.  [theory §4]
 
@@ -106,7 +106,7 @@ def robust_points(
     bounds : low, high of each arm joint in turn; a full turn, or the arm's reach, if left out. Samples begin there
     Raises InputError, MissingExtra (extra `fast`).
     """
-    equations = make_misalignment(plant, compensator)
+    equations = make_misalignment(plant, loop)
     chosen = _modes(plant, modes)
     if not 1 <= count <= LARGEST:
         raise InputError(f"count: {count} samples, but 1 to {LARGEST} are taken.")
@@ -128,7 +128,7 @@ def robust_points(
         count,
         nearest,
         float(error[good].max(initial=0.0)),
-        compensator is not None,
+        equations.E is not None,
     )
 
 

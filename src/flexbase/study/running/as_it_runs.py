@@ -5,10 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from flexbase.control.compensator import Compensator
-from flexbase.model.loop import Loop, loop_on
+from flexbase.model.loop import Asked, loop_on
 from flexbase.model.sensing import Sensing
-from flexbase.model.task import Gains
 from flexbase.plant import Pose, check_pose
 from flexbase.sampled.controller import pd_with_gain
 from flexbase.sampled.judged import GOOD_MARGIN
@@ -56,17 +54,15 @@ class AsItRuns:
         return f"{self.statement}\n  {self.loop}"
 
 
-def as_it_runs(
-    pose: Pose, compensator: Compensator, sensing: Sensing | None = None, gains: Gains | None = None
-) -> AsItRuns | None:
+def as_it_runs(pose: Pose, loop: Asked) -> AsItRuns | None:
     """The verdict on E with task PD at its pose, sampled; None without task gains.
 
-    sensing : if left out, as the project declares it, else 1 kHz with one sample of delay; gains : the project's own
+    loop : the compensator, alone or with task gains and sensing that take the place of the project's own
     Raises InputError.
     """
     check_pose(pose)
-    loop = loop_on(pose.arm, Loop(compensator, gains, sensing))
-    if loop.given_gains is None:
+    meant = loop_on(pose.arm, loop)
+    if meant.given_gains is None:
         return None
-    controller = pd_with_gain(pose, loop.sensing, loop.gains, loop.E, compensator.method)
-    return AsItRuns(hardware_verdict(controller), loop.sensing, loop.declared)
+    controller = pd_with_gain(pose, meant.sensing, meant.gains, meant.E, meant.name)
+    return AsItRuns(hardware_verdict(controller), meant.sensing, meant.declared)

@@ -9,7 +9,7 @@ from typing import Any
 
 from flexbase.checks import choose
 from flexbase.errors import FlexbaseWarning, Infeasible, InputError, MissingExtra
-from flexbase.model.loop import Loop, loop_on
+from flexbase.model.loop import Asked, loop_on
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose, check_pose
@@ -49,9 +49,7 @@ class Comparison:
         return "\n".join([f"{self.robot}, {self.sensing.summary()}", *said])
 
 
-def compare(
-    pose: Pose, methods: Sequence[str] | None = None, sensing: Sensing | None = None, gains: Gains | None = None
-) -> Comparison:
+def compare(pose: Pose, methods: Sequence[str] | None = None, loop: Asked = None) -> Comparison:
     """Every method's controller at a pose, judged. All registered methods if none are named.
 
     Raises InputError for an unknown method, and where gains are missing.
@@ -60,9 +58,9 @@ def compare(
     for name in names:
         choose("method", name, HARDWARE_METHODS)
     check_pose(pose)
-    loop = loop_on(pose.arm, Loop(gains=gains, sensing=sensing))
-    contenders = tuple(_contender(pose, name, loop.sensing, loop.gains) for name in names)
-    return Comparison(pose.plant.name, loop.sensing, contenders)
+    meant = loop_on(pose.arm, loop)
+    contenders = tuple(_contender(pose, name, meant.sensing, meant.gains) for name in names)
+    return Comparison(pose.plant.name, meant.sensing, contenders)
 
 
 def _contender(pose: Pose, name: str, sensing: Sensing, gains: Gains) -> Contender:

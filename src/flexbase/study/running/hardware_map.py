@@ -10,10 +10,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flexbase.checks import Array, check_length, choose
-from flexbase.control.compensator import Compensator
 from flexbase.errors import FlexbaseError, InputError, SingularArm, Unreachable
 from flexbase.model.digest import model_digest
-from flexbase.model.loop import Loop, loop_on
+from flexbase.model.loop import Asked, loop_on
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Plant, check_plant
@@ -42,7 +41,7 @@ STATUS = {
 BLOCK = 50  # cells: what a process is given, and what an interruption costs at most
 
 
-class Asked(NamedTuple):
+class Method(NamedTuple):
     """What is judged in every cell: a method that designs anew, or task PD with one E."""
 
     plant: Plant
@@ -58,9 +57,7 @@ def hardware_map(
     method: str = "none",
     shape: Sequence[int] = (50, 50),
     *,
-    sensing: Sensing | None = None,
-    gains: Gains | None = None,
-    compensator: Compensator | None = None,
+    loop: Asked = None,
     bounds: Sequence[float] | None = None,
     hold: Sequence[float] = (),
     branch: str | None = None,
@@ -79,7 +76,7 @@ def hardware_map(
     workers : processes, one a core if left out; progress : called with the cells done and all cells
     Raises InputError.
     """
-    loop = _loop(plant, method, sensing, gains, compensator, branch)
+    meant = _meant(plant, method, loop, branch)
     place = tip_place(plant, shape, bounds, (), hold, branch, {})
     axes, whole = place.domain.axes, place.domain.shape
     assert isinstance(place.domain, Grid)  # over tip it is
@@ -97,11 +94,11 @@ def hardware_map(
         fields[name] = Field("float64", dims, whole, block, {"units": unit, "long_name": purpose, MEASURED: "1"})
     everything = list(boxes(whole, block))
     counts = tuple(-(-size // part) for size, part in zip(whole, block, strict=True))
-    recipe = _recipe(loop, {axis.name: axis.values.tolist() for axis in axes}, list(held), list(block))
-    judged = f"{'given E' if loop.E is not None else f'method {method}'} at {loop.sensing.rate:g} Hz"
+    recipe = _recipe(meant, {axis.name: axis.values.tolist() for axis in axes}, list(held), list(block))
+    judged = f"{'given E' if meant.E is not None else f'method {method}'} at {meant.sensing.rate:g} Hz"
     said = {
         "robot": plant.name,
-        "compensated": int(loop.E is not None),
+        "compensated": int(meant.E is not None),
         "judged": judged,
         "over": "tip",
         **identity(recipe),
@@ -118,7 +115,7 @@ def hardware_map(
     total = int(np.prod(whole))
     done = total - sum(int(np.prod(extent(box))) for _, box in rest)
     progress(done, total)
-    tasks = [(loop, _targets(plant, axes, held, box)) for _, box in rest]
+    tasks = [(meant, _targets(plant, axes, held, box)) for _, box in rest]
     for number, (status, values) in in_processes(_verdicts, tasks, workers):
         place_, box = rest[number]
         parts = {"status": status, **dict(zip(MEASURES, values.T, strict=True))}
@@ -137,18 +134,16 @@ def hardware_path(
     tips: Sequence[Sequence[float]],
     method: str = "none",
     *,
-    sensing: Sensing | None = None,
-    gains: Gains | None = None,
-    compensator: Compensator | None = None,
+    loop: Asked = None,
     branch: str | None = None,
     workers: int | None = None,
 ) -> list[dict[str, Any]]:
     """The same along a path: for each tip "tip", "status" in words, and the measures. Raises InputError."""
-    loop = _loop(plant, method, sensing, gains, compensator, branch)
+    meant = _meant(plant, method, loop, branch)
     targets = np.array([check_length("path", tip, plant.arm.k, "one for each task row") for tip in tips])
     parts = np.array_split(targets, max(1, len(targets) // BLOCK))
     answers: list[Any] = [None] * len(parts)
-    for number, answer in in_processes(_verdicts, [(loop, part) for part in parts], workers):
+    for number, answer in in_processes(_verdicts, [(meant, part) for part in parts], workers):
         answers[number] = answer
     rows = [(code, row) for status, values in answers for code, row in zip(status, values, strict=True)]
     return [
@@ -157,18 +152,16 @@ def hardware_path(
     ]
 
 
-def _loop(
+def _meant(
     plant: Plant,
     method: str,
-    sensing: Sensing | None,
-    gains: Gains | None,
-    compensator: Compensator | None,
+    loop: Asked,
     branch: str | None,
-) -> Asked:
+) -> Method:
     choose("method", method, HARDWARE_METHODS)
     check_plant(plant)
-    loop = loop_on(plant.arm, Loop(compensator, gains, sensing))
-    return Asked(plant, method, loop.sensing, loop.gains, loop.E, branch)
+    meant = loop_on(plant.arm, loop)
+    return Method(plant, method, meant.sensing, meant.gains, meant.E, branch)
 
 
 def _targets(plant: Plant, axes: Any, held: Sequence[float], box: Any) -> Array:
@@ -181,7 +174,7 @@ def _targets(plant: Plant, axes: Any, held: Sequence[float], box: Any) -> Array:
     return np.asarray(targets)
 
 
-def _verdicts(task: tuple[Asked, Array]) -> tuple[np.ndarray, Array]:
+def _verdicts(task: tuple[Method, Array]) -> tuple[np.ndarray, Array]:
     """Status and measures of some tips, shape (tips,) and (tips, measures)."""
     loop, targets = task
     status, values = np.zeros(len(targets), dtype=np.int8), np.full((len(targets), len(MEASURES)), np.nan)
@@ -210,7 +203,7 @@ def _verdicts(task: tuple[Asked, Array]) -> tuple[np.ndarray, Array]:
     return status, values
 
 
-def _recipe(loop: Asked, axes: dict[str, list[float]], held: list[float], block: list[int]) -> dict[str, Any]:
+def _recipe(loop: Method, axes: dict[str, list[float]], held: list[float], block: list[int]) -> dict[str, Any]:
     from importlib.metadata import version
 
     return {

@@ -10,8 +10,7 @@ import numpy as np
 
 from flexbase.checks import choose
 from flexbase.errors import FlexbaseError, FlexbaseWarning
-from flexbase.model.loop import Loop, loop_on
-from flexbase.model.sensing import Sensing
+from flexbase.model.loop import Asked, LoopSpec, loop_on
 from flexbase.plant import Plant, Pose, check_plant
 from flexbase.sampled.figures import FIGURES
 from flexbase.sampled.judged import GOOD_MARGIN, judged
@@ -114,7 +113,7 @@ def hardware_study(
     seed: int = 0,
     methods: Sequence[str] | None = None,
     settings: Sequence[Setting] = SETTINGS,
-    sensing: Sensing | None = None,
+    loop: Asked = None,
     workers: int | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> HardwareStudy:
@@ -123,17 +122,17 @@ def hardware_study(
     The poses are the tips that `random_poses` draws uniformly over the workspace. A method without a design at a pose
     counts as unstable there.
 
-    sensing : delays and sensors, the project's own if left out; its rate is replaced by the setting's
+    loop : task gains, delays and sensors, the project's own if left out; rate and gains are those of the setting
     Raises InputError.
     """
     chosen = list(HARDWARE_METHODS) if methods is None else list(methods)
     for name in chosen:
         choose("method", name, HARDWARE_METHODS)
     check_plant(plant)
-    loop = loop_on(plant.arm, Loop(sensing=sensing))
-    _ = loop.gains  # raises where there are none
+    meant = loop_on(plant.arm, loop)
+    _ = meant.gains  # raises where there are none
     drawn = random_poses(plant, poses, seed)
-    tasks = [(pose, name, settings, loop.sensing) for pose in drawn for name in chosen]
+    tasks = [(pose, name, settings, meant) for pose in drawn for name in chosen]
     found: dict[tuple[str, Setting], list[Outcome]] = {(name, one): [] for name in chosen for one in settings}
     for done, (_, (name, outcomes)) in enumerate(in_processes(outcomes_of, tasks, workers), start=1):
         for setting, outcome in zip(settings, outcomes, strict=True):
@@ -144,19 +143,19 @@ def hardware_study(
     )
 
 
-Task = tuple[Pose, str, Sequence[Setting], Sensing]
+Task = tuple[Pose, str, Sequence[Setting], LoopSpec]
 
 
 def outcomes_of(task: Task) -> tuple[str, list[Outcome]]:
     """One method at one pose, at every setting."""
-    pose, name, settings, sensing = task
-    return name, [_outcome(pose, name, setting, sensing) for setting in settings]
+    pose, name, settings, loop = task
+    return name, [_outcome(pose, name, setting, loop) for setting in settings]
 
 
-def _outcome(pose: Pose, name: str, setting: Setting, sensing: Sensing) -> Outcome:
-    gains = loop_on(pose.arm).scaled(setting.scale)
+def _outcome(pose: Pose, name: str, setting: Setting, loop: LoopSpec) -> Outcome:
+    gains = loop.scaled(setting.scale)
     try:
-        controller = HARDWARE_METHODS[name].make(pose, replace(sensing, rate=setting.rate), gains)
+        controller = HARDWARE_METHODS[name].make(pose, replace(loop.sensing, rate=setting.rate), gains)
     except (FlexbaseError, FlexbaseWarning, np.linalg.LinAlgError):
         return NO_DESIGN
     found = judged(controller, pose)

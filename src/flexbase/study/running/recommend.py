@@ -10,7 +10,7 @@ import numpy as np
 
 from flexbase.errors import FlexbaseError
 from flexbase.linear.modal import modes
-from flexbase.model.loop import Loop, loop_on
+from flexbase.model.loop import Asked, loop_on
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose, check_pose
@@ -133,8 +133,7 @@ class Recommendation:
 def recommend(
     pose: Pose,
     *,
-    sensing: Sensing | None = None,
-    gains: Gains | None = None,
+    loop: Asked = None,
     methods: Sequence[str] | None = None,
     workers: int | None = 1,
     progress: Callable[[str, int, int], None] = lambda what, done, total: None,
@@ -145,13 +144,13 @@ def recommend(
     then the stiffness at its worst frequency; a method that comes earlier in the registry is preferred where it reaches
     80 % of it.
 
-    sensing : the project's own if left out, else 1 kHz with one sample of delay
+    loop : task gains and sensing: the project's own if left out, else 1 kHz with one sample of delay
     workers : processes, None for one a core; a script that asks for several needs its `__main__` guard
     Raises InputError without task gains.
     """
     check_pose(pose)
-    loop = loop_on(pose.arm, Loop(gains=gains, sensing=sensing))
-    used, gains = loop.sensing, loop.gains
+    meant = loop_on(pose.arm, loop)
+    used, gains = meant.sensing, meant.gains
     chosen = list(HARDWARE_METHODS) if methods is None else list(methods)
     others = [(f"{rate:g} Hz", replace(used, rate=rate)) for rate in RATES if rate != used.rate]
     sensors = [("accelerometer", "joint accelerometers"), ("encoders", "differenced encoders")]
@@ -171,7 +170,7 @@ def recommend(
     }
     ideal = modes(pose).positive_real
     tip = tuple(map(float, pose.tip))
-    return Recommendation(pose.plant.name, tip, used, loop.declared, ideal, best, tuple(tables[0]), changes)
+    return Recommendation(pose.plant.name, tip, used, meant.declared, ideal, best, tuple(tables[0]), changes)
 
 
 def choose_best(candidates: Sequence[Candidate]) -> Candidate | None:

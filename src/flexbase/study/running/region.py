@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 
 from flexbase.checks import Array, check_length, positive_number
 from flexbase.errors import InputError, SingularArm, Unreachable
-from flexbase.model.loop import Loop, loop_on
-from flexbase.model.sensing import Sensing
+from flexbase.model.loop import Asked, loop_on
 from flexbase.model.task import BRANCHES, Gains
-from flexbase.plant import Pose
+from flexbase.plant import Pose, check_pose
 from flexbase.sampled.controller import SampledController, pd_with_gain
 from flexbase.sampled.judged import judged
 from flexbase.sweeps.engine.pool import in_processes
@@ -164,8 +163,7 @@ def _shown(radius: float | None, unit: str) -> str:
 def region(
     pose: Pose,
     method: str,
-    sensing: Sensing | None = None,
-    gains: Gains | None = None,
+    loop: Asked = None,
     half_width: float = 0.15,
     progress: Callable[[int, int], None] = lambda done, total: None,
     shape: Sequence[int] = (25, 25),
@@ -174,7 +172,9 @@ def region(
 
     Raises InputError, Infeasible.
     """
-    controller = controller_for(pose, method, sensing, gains)
+    check_pose(pose)
+    meant = loop_on(pose.arm, loop)
+    controller = controller_for(pose, method, meant.sensing, meant.gains)
     follows = HARDWARE_METHODS[method].law == "gains"
-    kept = loop_on(pose.arm, Loop(gains=gains)).gains if follows else None
+    kept = meant.gains if follows else None
     return validity(controller, kept, half_width=half_width, shape=shape, progress=progress)

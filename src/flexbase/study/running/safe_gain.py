@@ -10,8 +10,7 @@ import numpy as np
 
 from flexbase.checks import choose
 from flexbase.errors import FlexbaseError, InputError
-from flexbase.model.loop import Loop, loop_on
-from flexbase.model.sensing import Sensing
+from flexbase.model.loop import Asked, loop_on
 from flexbase.model.task import Gains
 from flexbase.plant import Pose, check_pose
 from flexbase.sampled.judged import Judged, Robots, robots_at
@@ -47,7 +46,7 @@ class SafeGain:
         return f"{self.method}: safe up to {safe}; stable up to {stable}"
 
 
-def safe_gain(pose: Pose, method: str = "none", sensing: Sensing | None = None, gains: Gains | None = None) -> SafeGain:
+def safe_gain(pose: Pose, method: str = "none", loop: Asked = None) -> SafeGain:
     """The highest safe and stable scale from 0.001 to 100, the method designing anew at each scale.
 
     `constant` keeps to the scale that is asked; the loop-shaping methods choose a softer one where it is too much.
@@ -55,13 +54,13 @@ def safe_gain(pose: Pose, method: str = "none", sensing: Sensing | None = None, 
     Raises InputError.
     """
     check_pose(pose)
-    loop = loop_on(pose.arm, Loop(gains=gains, sensing=sensing))
-    robots = robots_at(pose, loop.sensing)
+    meant = loop_on(pose.arm, loop)
+    robots = robots_at(pose, meant.sensing)
     known: dict[float, Judged | None] = {}
 
     def at(scale: float) -> Judged | None:
         if scale not in known:
-            known[scale] = _judged(robots, method, loop.scaled(scale))
+            known[scale] = _judged(robots, method, meant.scaled(scale))
         return known[scale]
 
     def is_stable(scale: float) -> bool:
