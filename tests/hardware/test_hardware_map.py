@@ -55,7 +55,7 @@ def test_stopped_and_gone_on_with(paper: fb.Plant, tmp_path: Path, monkeypatch: 
     """An interruption costs its block; the second run computes the others alone; another recipe is refused."""
     monkeypatch.setattr(module, "BLOCK", 4)
     store, seen = tmp_path / "m.zarr", []
-    options = {"sensing": FAST, "bounds": (0.1, 0.5, -0.4, 0.4), "store": store, "workers": 1}
+    options = {"loop": Loop(sensing=FAST), "bounds": (0.1, 0.5, -0.4, 0.4), "store": store, "workers": 1}
 
     def stop(done: int, total: int) -> None:
         if done >= 4:
@@ -70,7 +70,7 @@ def test_stopped_and_gone_on_with(paper: fb.Plant, tmp_path: Path, monkeypatch: 
     whole = hardware_map(paper, "none", (4, 3), **{**options, "store": None})
     np.testing.assert_array_equal(found["spectral_radius"].values, whole["spectral_radius"].values)
     with pytest.raises(InputError, match="sensing"):
-        hardware_map(paper, "none", (4, 3), resume=True, **{**options, "sensing": Sensing(rate=2000.0)})
+        hardware_map(paper, "none", (4, 3), resume=True, **{**options, "loop": Loop(sensing=Sensing(rate=2000.0))})
     with pytest.raises(InputError, match="nothing to resume"):
         hardware_map(paper, "none", (4, 3), resume=True, **{**options, "store": None})
 
