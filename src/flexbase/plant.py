@@ -21,6 +21,8 @@ from flexbase.model.files.project import load_project
 from flexbase.model.mechanism import Mechanism
 from flexbase.model.mounted import MountedArm
 from flexbase.model.task import check_branch
+from flexbase.sheets.numbers import listed
+from flexbase.sheets.sheet import Facts, facts
 from flexbase.trace.algebra import unstack
 
 SINGULAR = 1e-8  # smallest to largest singular value of Jv, below which the arm counts as singular
@@ -133,6 +135,15 @@ class Pose:
     def arm(self) -> MountedArm:
         """The arm on its base."""
         return self.plant.arm
+
+    @property
+    def where(self) -> Facts:
+        """Joints and tip, as a sheet says them."""
+        chain, task = self.arm.mechanism, self.arm.task
+        return facts(
+            ("joints", listed(self.q, chain.joint_names, chain.joint_units)),
+            ("tip", listed(self.tip, task.rows, task.units)),
+        )
 
     @cached_property
     def frames(self) -> Frames:

@@ -69,6 +69,11 @@ class Mechanism:
                 object.__setattr__(self, name, np.zeros(self.N))
 
     @property
+    def joint_units(self) -> tuple[str, ...]:
+        """Unit of each joint's coordinate, rad or m."""
+        return tuple("rad" if kind == "revolute" else "m" for kind in self.joint_types)
+
+    @property
     def N(self) -> int:
         """Number of joints, base and arm."""
         return len(self.joint_names)

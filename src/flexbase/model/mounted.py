@@ -49,6 +49,16 @@ class MountedArm:
         return self.task.k
 
     @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the arm joints."""
+        return self.mechanism.joint_names[self.m :]
+
+    @property
+    def joint_units(self) -> tuple[str, ...]:
+        """Unit of each arm joint's coordinate, rad or m."""
+        return self.mechanism.joint_units[self.m :]
+
+    @property
     def has_gravity(self) -> bool:
         """Whether gravity acts."""
         return bool(self.gravity.any())
