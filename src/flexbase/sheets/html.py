@@ -50,7 +50,9 @@ def _table(head: Iterable[str], body: Iterable[str], heading: str) -> str:
 
 
 def _row(kind: str, cells: Iterable[str], sides: Iterable[str]) -> str:
-    return f"<tr>{''.join(f'<{kind} {side}>{_safe(cell)}</{kind}>' for cell, side in zip(cells, sides, strict=True))}</tr>"
+    return (
+        f"<tr>{''.join(f'<{kind} {side}>{_safe(cell)}</{kind}>' for cell, side in zip(cells, sides, strict=True))}</tr>"
+    )
 
 
 def _safe(words: str) -> str:

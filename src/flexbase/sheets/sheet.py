@@ -89,7 +89,9 @@ Part: TypeAlias = Facts | Table | Answer | Note | Sheet
 
 def make_sheet(title: str, rest: str, *parts: Part | None, cautions: Iterable[str] = ()) -> Sheet:
     """A sheet of the parts that have something to say."""
-    return Sheet(title, rest, tuple(part for part in parts if part is not None and not _is_empty(part)), tuple(cautions))
+    return Sheet(
+        title, rest, tuple(part for part in parts if part is not None and not _is_empty(part)), tuple(cautions)
+    )
 
 
 def facts(*rows: tuple[str, str] | None, heading: str = "") -> Facts:

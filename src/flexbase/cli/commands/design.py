@@ -12,7 +12,6 @@ from flexbase.cli.options.method import MethodOptions
 from flexbase.cli.options.pose import PoseOptions, Robot
 from flexbase.cli.options.sensing import SensingOptions
 from flexbase.cli.terminal import as_it_runs as hardware
-from flexbase.cli.terminal import units
 from flexbase.cli.terminal.certificate import tables
 from flexbase.cli.terminal.document import document
 from flexbase.cli.terminal.out import PICTURES, OutFile, check_out, written
@@ -21,6 +20,7 @@ from flexbase.compensators import design as design_at
 from flexbase.errors import Infeasible
 from flexbase.model.loop import Loop
 from flexbase.plant import load
+from flexbase.sheets import units
 from flexbase.study.running.as_it_runs import as_it_runs
 
 app = App(

@@ -11,12 +11,12 @@ from rich.console import RenderableType
 from flexbase.checks import choose
 from flexbase.cli.options.common import CompensatorFile, Json
 from flexbase.cli.options.pose import PoseOptions, Robot, compensator_of, where
-from flexbase.cli.terminal.digits import number
 from flexbase.cli.terminal.document import document
 from flexbase.cli.terminal.out import Out, check_out, write_out, written
 from flexbase.cli.terminal.show import facts, put, table, title
 from flexbase.measures.manipulability import CONVENTIONS, Manipulability, manipulability
 from flexbase.plant import load
+from flexbase.sheets.numbers import number
 
 app = App(
     name="ellipsoid",

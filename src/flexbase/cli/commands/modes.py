@@ -9,13 +9,13 @@ from rich.console import RenderableType
 
 from flexbase.cli.options.common import CompensatorFile, Json
 from flexbase.cli.options.pose import PoseOptions, Robot, compensator_of, where
-from flexbase.cli.terminal.digits import number
 from flexbase.cli.terminal.document import document
 from flexbase.cli.terminal.out import Out, check_out, write_out, written
 from flexbase.cli.terminal.show import facts, put, table, title, verdict
 from flexbase.linear.modal import Modes
 from flexbase.linear.modal import modes as modes_of
 from flexbase.plant import load
+from flexbase.sheets.numbers import number
 
 app = App(
     name="modes",

@@ -11,12 +11,12 @@ from flexbase.cli.options.common import CompensatorFile, Json, blaming, option
 from flexbase.cli.options.elbow import AnyElbow
 from flexbase.cli.options.pose import Robot, compensator_of
 from flexbase.cli.options.words import Vector, numbers
-from flexbase.cli.terminal.digits import listed, number
 from flexbase.cli.terminal.document import document
 from flexbase.cli.terminal.out import Out, check_out, write_out, written
 from flexbase.cli.terminal.show import facts, put, table, title
 from flexbase.errors import InputError
 from flexbase.plant import load
+from flexbase.sheets.numbers import listed, number
 from flexbase.study.postures.objective import climbable
 from flexbase.study.postures.posture import Posture, Postures, best_posture
 

@@ -11,7 +11,6 @@ from rich.console import RenderableType
 from flexbase.cli.options.common import CompensatorFile, Json, option
 from flexbase.cli.options.pose import PoseOptions, Robot, compensator_of, where
 from flexbase.cli.options.words import number as read_number
-from flexbase.cli.terminal.digits import number
 from flexbase.cli.terminal.document import document
 from flexbase.cli.terminal.out import Out, check_out, write_out, written
 from flexbase.cli.terminal.show import facts, put, title
@@ -19,6 +18,7 @@ from flexbase.cli.terminal.show import verdict as said
 from flexbase.linear.passivity.judge import verdict as verdict_of
 from flexbase.linear.passivity.verdict import Verdict
 from flexbase.plant import load
+from flexbase.sheets.numbers import number
 
 app = App(
     name="verdict",

@@ -12,12 +12,12 @@ from rich.console import RenderableType
 from flexbase.cli.options.common import blaming, option
 from flexbase.cli.options.elbow import Elbow as Elbow
 from flexbase.cli.options.words import Vector, numbers
-from flexbase.cli.terminal.digits import listed
 from flexbase.cli.terminal.show import facts
 from flexbase.control.compensator import Compensator, load_compensator
 from flexbase.errors import InputError
 from flexbase.model.loop import loop_on
 from flexbase.plant import Plant, Pose
+from flexbase.sheets.numbers import listed
 
 Robot = Annotated[str, Parameter(help="bundled name (see: flexbase robots) or path of a project file")]
 POSE = Group("Pose", sort_key=10)

@@ -6,9 +6,9 @@ from textwrap import indent
 
 from rich.console import RenderableType
 
-from flexbase.cli.terminal.digits import listed, matrix, number
 from flexbase.cli.terminal.show import facts, table, title, verdict
 from flexbase.control.compensator import Compensator
+from flexbase.sheets.numbers import listed, matrix, number
 
 IDEAL = "Continuous time, ideal acceleration."
 

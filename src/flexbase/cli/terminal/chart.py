@@ -7,11 +7,11 @@ from typing import Any
 
 from rich.console import RenderableType
 
-from flexbase.cli.terminal.digits import number
 from flexbase.cli.terminal.document import document
 from flexbase.cli.terminal.out import PICTURES, check_out, write_out
 from flexbase.cli.terminal.show import facts, table, title
 from flexbase.errors import InputError
+from flexbase.sheets.numbers import number
 from flexbase.sweeps import document as numbers
 from flexbase.sweeps import save_csv, save_netcdf
 from flexbase.sweeps.answers.summary import counts, extents, measures_of

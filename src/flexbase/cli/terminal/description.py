@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from rich.console import RenderableType
 
-from flexbase.cli.terminal import units
-from flexbase.cli.terminal.digits import listed, number
 from flexbase.cli.terminal.show import facts, table, title
+from flexbase.sheets import units
+from flexbase.sheets.numbers import listed, number
 from flexbase.study.describe import Description
 
 

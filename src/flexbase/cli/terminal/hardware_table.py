@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from rich.console import RenderableType
 
-from flexbase.cli.terminal.digits import kilo
 from flexbase.cli.terminal.show import table, title
+from flexbase.sheets.numbers import kilo
 from flexbase.study.running.hardware_study import HardwareStudy, Row
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from rich.console import RenderableType
 
-from flexbase.cli.terminal.digits import number
 from flexbase.cli.terminal.show import facts, table, title, verdict
+from flexbase.sheets.numbers import number
 from flexbase.study.layout.layout import Layout
 
 

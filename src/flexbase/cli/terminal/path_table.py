@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from flexbase.cli.terminal.digits import kilo, number
+from flexbase.sheets.numbers import kilo, number
 
 HEADS = ("tip", "", "radius", "margins", "worst\nradius", "stiff\n[kN/m]", "tip\n[%]", "tau\n[ms]")
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from rich.console import RenderableType
 
-from flexbase.cli.terminal.digits import number
 from flexbase.cli.terminal.show import facts, table
+from flexbase.sheets.numbers import number
 from flexbase.study.robust_configurations.curves import RobustCurves
 from flexbase.study.robust_configurations.points import RobustPoints
 

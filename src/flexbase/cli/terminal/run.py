@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from rich.console import RenderableType
 
-from flexbase.cli.terminal import units
-from flexbase.cli.terminal.digits import number
 from flexbase.cli.terminal.show import facts, table, title, verdict
+from flexbase.sheets import units
+from flexbase.sheets.numbers import number
 from flexbase.simulation import Run
 
 

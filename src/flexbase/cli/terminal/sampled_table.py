@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from rich.console import RenderableType
 
-from flexbase.cli.terminal.digits import number as shown
 from flexbase.cli.terminal.show import facts, title, verdict
+from flexbase.sheets.numbers import number as shown
 from flexbase.simulation import SampledRun
 
 

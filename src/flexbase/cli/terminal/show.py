@@ -12,7 +12,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from flexbase.cli.terminal.digits import matrix
+from flexbase.sheets.numbers import matrix
 
 GOOD, BAD, QUIET, HEAD = "green", "red", "dim", "bold"
 

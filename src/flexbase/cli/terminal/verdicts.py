@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from rich.console import RenderableType
 
-from flexbase.cli.terminal.digits import kilo, number
 from flexbase.cli.terminal.show import facts, table, title
 from flexbase.sampled.judged import GOOD_MARGIN
 from flexbase.sampled.verdict import HardwareVerdict
+from flexbase.sheets.numbers import kilo, number
 from flexbase.study.running.comparison import Comparison
 
 COLUMNS = (
