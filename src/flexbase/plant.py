@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -10,16 +9,18 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flexbase.cautions import caution
 from flexbase.checks import FARTHEST, Array, check_length, check_within, finite_array
 from flexbase.dynamics.inertia import mass_matrix
 from flexbase.dynamics.inverse.arm_angles import Solution, arm_angles, arm_solutions
 from flexbase.dynamics.kinematics import Frames, forward, task_jacobian
 from flexbase.dynamics.statics import gravity_stiffness, gravity_torques, static_base
 from flexbase.dynamics.task import Target, target_of, task_error, task_value
-from flexbase.errors import FlexbaseWarning, InputError, SingularArm, Unreachable
+from flexbase.errors import InputError, SingularArm, Unreachable
 from flexbase.model.files.project import load_project
 from flexbase.model.mechanism import Mechanism
 from flexbase.model.mounted import MountedArm
+from flexbase.model.parts import Blocks
 from flexbase.model.task import check_branch
 from flexbase.sheets.numbers import listed
 from flexbase.sheets.sheet import Facts, facts
@@ -47,14 +48,15 @@ class Plant:
         Under gravity the base sags from its equilibrium. Raises InputError, SingularArm.
         """
         given = check_within("joints", np.atleast_1d(finite_array("joints", joints)), FARTHEST, "rad or m")
-        m, n, N = self.arm.m, self.arm.n, self.arm.N
+        n, N, parts = self.arm.n, self.arm.N, self.arm.parts
         if given.shape not in ((n,), (N,)):
             raise InputError(
                 f"joints: {given.size} values given, {n} (the arm) or {N} (base first) needed: "
                 f"{', '.join(self.arm.mechanism.joint_names)}."
             )
-        equilibrium = given[:m] if given.size == N else self.arm.base.equilibrium
-        return self._pose(given[given.size - n :], equilibrium)
+        if given.size == N:
+            return self._pose(parts.arm(given), parts.base(given))
+        return self._pose(given, self.arm.base.equilibrium)
 
     def at_tip(self, target: ArrayLike, branch: str | None = None, near: ArrayLike | None = None) -> Pose:
         """The pose whose resting tip is at a target, one value for each task row [m, rad].
@@ -98,7 +100,7 @@ class Plant:
                 pose = self.at_tip(wanted, one.branch, near=one.joints)
             except (SingularArm, Unreachable):
                 continue
-            found.append(Solution(one.branch, pose.q[self.arm.m :]))
+            found.append(Solution(one.branch, pose.joints))
         return tuple(found)
 
     def _missed(self, wanted: Array, side: str, base: Array, missing: float) -> str:
@@ -112,7 +114,7 @@ class Plant:
         return f"{said}, but reached on {', '.join(dict.fromkeys(others)) or 'others'}. Give one of them."
 
     def _pose(self, arm_joints: Array, equilibrium: Array) -> Pose:
-        q = np.concatenate([static_base(self.arm, arm_joints, equilibrium), arm_joints])
+        q = self.arm.parts.whole(static_base(self.arm, arm_joints, equilibrium), arm_joints)
         pose = Pose(self, q, np.asarray(equilibrium))
         _check_inertia(pose)
         _check_regular(pose)
@@ -124,7 +126,7 @@ class Pose:
     """A plant at rest in one configuration.
 
     q : joint positions at rest, base first, shape (N,) [rad or m]
-    equilibrium : where the base springs are at rest, shape (m,); differs from q[:m] only under gravity
+    equilibrium : where the base springs are at rest, shape (m,); differs from the base's joints only under gravity
     """
 
     plant: Plant
@@ -161,18 +163,53 @@ class Pose:
         return np.array(task_jacobian(self.frames, self.arm.task.indices))
 
     @cached_property
+    def joints(self) -> Array:
+        """Arm joints, shape (n,) [rad or m]."""
+        return self.arm.parts.arm(self.q)
+
+    @cached_property
+    def sag(self) -> Array:
+        """Base joints, away from the equilibrium of their springs, shape (m,) [rad or m]."""
+        return self.arm.parts.base(self.q) - self.equilibrium
+
+    @cached_property
+    def _inertia(self) -> Blocks:
+        return self.arm.parts.blocks(self.M)
+
+    @property
+    def Mpp(self) -> Array:
+        """Inertia of the base with the arm held, shape (m, m)."""
+        return np.asarray(self._inertia.passive)
+
+    @property
+    def Map(self) -> Array:
+        """Coupling of arm (rows) and base, shape (n, m)."""
+        return np.asarray(self._inertia.coupling)
+
+    @property
+    def Mhat(self) -> Array:
+        """Inertia of the arm with the base held, shape (n, n)."""
+        return np.asarray(self._inertia.active)
+
+    @cached_property
+    def Jp(self) -> Array:
+        """How the base moves the tip, shape (k, m)."""
+        return self.arm.parts.base(self.J)
+
+    @cached_property
+    def Jv(self) -> Array:
+        """How the arm moves the tip, shape (k, n)."""
+        return self.arm.parts.arm(self.J)
+
+    @cached_property
     def K(self) -> Array:
         """Stiffness of base and gravity, shape (N, N)."""
-        K = gravity_stiffness(self.arm, self.q)
-        K[: self.arm.m, : self.arm.m] += self.arm.base.stiffness
-        return K
+        return np.asarray(gravity_stiffness(self.arm, self.q) + self.arm.parts.on_base(self.arm.base.stiffness))
 
     @cached_property
     def D(self) -> Array:
         """Damping of base and joint friction, shape (N, N)."""
-        D = np.diag(self.arm.mechanism.friction)
-        D[: self.arm.m, : self.arm.m] += self.arm.base.damping
-        return D
+        return np.asarray(np.diag(self.arm.mechanism.friction) + self.arm.parts.on_base(self.arm.base.damping))
 
     @cached_property
     def tip(self) -> Array:
@@ -187,7 +224,7 @@ class Pose:
     @cached_property
     def holding_torque(self) -> Array:
         """Arm torques that hold the pose against gravity, shape (n,)."""
-        return gravity_torques(self.arm, self.q)[self.arm.m :]
+        return self.arm.parts.arm(gravity_torques(self.arm, self.q))
 
     def tip_error(self, q: Array) -> Array:
         """Task error of other configurations, shape (..., N), against this pose, shape (..., k)."""
@@ -225,16 +262,14 @@ def _check_inertia(pose: Pose) -> None:
             f"(smallest eigenvalue {eigenvalues[0]:.3g}). Give the massless links a mass or an inertia."
         )
     if eigenvalues[-1] > ILL_CONDITIONED * eigenvalues[0]:
-        warnings.warn(
+        caution(
             f"{pose.plant.name}: condition number of M is {eigenvalues[-1] / eigenvalues[0]:.2g}; "
-            "expect few correct digits.",
-            FlexbaseWarning,
-            stacklevel=4,
+            "expect few correct digits."
         )
 
 
 def _check_regular(pose: Pose) -> None:
-    singular_values = np.linalg.svd(pose.J[:, pose.arm.m :], compute_uv=False)
+    singular_values = np.linalg.svd(pose.Jv, compute_uv=False)
     if singular_values[-1] <= SINGULAR * singular_values[0]:
         raise SingularArm(
             f"{pose.plant.name}: the arm is singular at q = {np.round(pose.q, 4).tolist()} (singular values of Jv "

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 from flexbase.checks import Array
 from flexbase.model.base import Base
 from flexbase.model.mechanism import Mechanism
+from flexbase.model.parts import Parts, base_first
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains, Task
 
@@ -48,15 +50,20 @@ class MountedArm:
         """Number of task rows."""
         return self.task.k
 
+    @cached_property
+    def parts(self) -> Parts:
+        """Which joints are passive and which active: `parts.arm(q)`, `parts.base(q)`, `parts.blocks(M)`."""
+        return base_first(self.m, self.N)
+
     @property
     def joint_names(self) -> tuple[str, ...]:
         """Names of the arm joints."""
-        return self.mechanism.joint_names[self.m :]
+        return self.parts.arm(self.mechanism.joint_names)
 
     @property
     def joint_units(self) -> tuple[str, ...]:
         """Unit of each arm joint's coordinate, rad or m."""
-        return self.mechanism.joint_units[self.m :]
+        return self.parts.arm(self.mechanism.joint_units)
 
     @property
     def has_gravity(self) -> bool:

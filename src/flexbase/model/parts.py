@@ -1,0 +1,87 @@
+"""Passive (base) and active (arm) joints of a chain, by index: the one place that knows that the base comes first."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple, TypeVar, overload
+
+import numpy as np
+
+T = TypeVar("T")
+A = TypeVar("A", bound=np.ndarray)
+
+
+class Blocks(NamedTuple):
+    """A symmetric N x N matrix by its parts: passive (m x m), coupling (active rows, n x m), active (n x n)."""
+
+    passive: Any
+    coupling: Any
+    active: Any
+
+
+class Parts(NamedTuple):
+    """Indices of the passive and of the active joints.
+
+    Vectors are arrays, whose last axis runs over the joints, or sequences of scalars of any type; matrices likewise.
+    """
+
+    passive: tuple[int, ...]
+    active: tuple[int, ...]
+
+    @overload
+    def base(self, values: A) -> A: ...
+    @overload
+    def base(self, values: Sequence[T]) -> tuple[T, ...]: ...
+    def base(self, values: Any) -> Any:
+        """What belongs to the passive joints: m of N."""
+        return _chosen(values, self.passive)
+
+    @overload
+    def arm(self, values: A) -> A: ...
+    @overload
+    def arm(self, values: Sequence[T]) -> tuple[T, ...]: ...
+    def arm(self, values: Any) -> Any:
+        """What belongs to the active joints: n of N."""
+        return _chosen(values, self.active)
+
+    @overload
+    def whole(self, base: A, arm: A) -> A: ...
+    @overload
+    def whole(self, base: Sequence[T], arm: Sequence[T]) -> tuple[T, ...]: ...
+    def whole(self, base: Any, arm: Any) -> Any:
+        """Both parts together, in the order of the chain."""
+        order = np.argsort((*self.passive, *self.active))
+        if isinstance(arm, np.ndarray):
+            return _chosen(np.concatenate([base, arm], axis=-1), order)
+        return _chosen((*base, *arm), order)
+
+    def blocks(self, matrix: Any) -> Blocks:
+        """The parts of a symmetric matrix, N x N."""
+        pairs = (self.passive, self.passive), (self.active, self.passive), (self.active, self.active)
+        if isinstance(matrix, np.ndarray):
+            return Blocks(*(matrix[np.ix_(rows, columns)] for rows, columns in pairs))
+        return Blocks(*(tuple(_chosen(matrix[row], columns) for row in rows) for rows, columns in pairs))
+
+    def on_base(self, block: np.ndarray) -> np.ndarray:
+        """The N x N matrix that is this block, m x m, on the passive joints and zero elsewhere."""
+        return self._spread(block, self.passive)
+
+    def on_arm(self, block: np.ndarray) -> np.ndarray:
+        """The N x N matrix that is this block, n x n, on the active joints and zero elsewhere."""
+        return self._spread(block, self.active)
+
+    def _spread(self, block: np.ndarray, joints: tuple[int, ...]) -> np.ndarray:
+        whole = np.zeros((len(self.passive) + len(self.active),) * 2)
+        whole[np.ix_(joints, joints)] = block
+        return whole
+
+
+def base_first(m: int, N: int) -> Parts:
+    """The parts of a chain of N joints whose first m are the base."""
+    return Parts(tuple(range(m)), tuple(range(m, N)))
+
+
+def _chosen(values: Any, joints: Sequence[int] | np.ndarray) -> Any:
+    if isinstance(values, np.ndarray):
+        return np.take(values, np.asarray(joints, dtype=int), axis=-1)
+    return tuple(values[joint] for joint in joints)
