@@ -11,6 +11,7 @@ from flexbase.trace.eigen import generalised_eigen
     "algebraic_loop_radius",
     unit="1",
     purpose="rho(Ms^-1 E) of the given gain: below 1 it survives a common delay",
+    small_is_good=True,
 )
 def algebraic_loop_radius(configuration: Configuration) -> Scalar:
     """rho(Ms^-1 E), the gain once around the loop q'' -> torque -> q''; 0 without a compensator.  [theory §8]"""

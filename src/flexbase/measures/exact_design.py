@@ -28,6 +28,7 @@ def feasible(configuration: Configuration) -> Scalar:
     purpose="||E||_F of the exact design at its default frequency",
     needs=_needs,
     feasible=feasible,
+    small_is_good=True,
 )
 def exact_gain(configuration: Configuration) -> Scalar:
     """Frobenius norm of the smallest gain with w = 0 at the default frequency.  [theory §7]"""
@@ -40,6 +41,7 @@ def exact_gain(configuration: Configuration) -> Scalar:
     purpose="algebraic-loop radius of the exact design: below 1 it survives a common delay",
     needs=_needs,
     feasible=feasible,
+    small_is_good=True,
 )
 def exact_radius(configuration: Configuration) -> Scalar:
     """rho(Ms^-1 E) of the same gain.  [theory §8]"""

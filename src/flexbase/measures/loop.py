@@ -59,6 +59,8 @@ def _loop(configuration: Configuration) -> tuple[Loop, Array, Array]:
     zero_is="the limit of stability",
     needs=lambda m, n, k: None if m else "a base joint",
     slow=True,
+    no_search="is slow and has no derivatives",
+    small_is_good=True,
 )
 def closed_loop_abscissa(configuration: Configuration) -> Scalar:
     """Real part of the rightmost pole of the reduced loop, by LAPACK; negative where it settles.  [theory §3]
@@ -75,6 +77,7 @@ def closed_loop_abscissa(configuration: Configuration) -> Scalar:
     purpose="scale s of the task gains (s Kp, sqrt(s) Kv) up to which the loop is stable; slow",
     needs=lambda m, n, k: None if m else "a base joint",
     slow=True,
+    no_search="is slow and has no derivatives",
 )
 def highest_gain(configuration: Configuration) -> Scalar:
     """The largest s such that (s Kp, sqrt(s) Kv) is stable for it and all smaller of the scales looked at.

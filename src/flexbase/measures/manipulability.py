@@ -133,6 +133,8 @@ def volume(configuration: Configuration) -> Scalar:
     unit="rad",
     purpose="how far E turns the force ellipsoid's longest axis",
     needs=lambda m, n, k: None if k > 1 else "two task rows",
+    no_search="is an angle, neither good nor bad",
+    period=np.pi,
 )
 def axis_rotation(configuration: Configuration) -> Scalar:
     """Angle from the original to the compensated longest axis of |f| <= 1.  [U03 §IV C]

@@ -58,49 +58,48 @@ class Measure(NamedTuple):
     """A registered measure.
 
     per_mode : whether it reads one `RealMode` and has a value for each, or reads a `Configuration`
-    reads_modes : whether it reads modes, one or all of them
+    all_modes : whether it reads the modes of that
     zero_is : what its zero means, or None where zero means nothing
     zero_line : another measure that changes its sign, near 0, where this one only touches zero
     needs : of m, n and k (base joints, arm joints, task rows), what is missing for this measure, or None
     slow : whether it needs eigenvalues of general matrices: NumPy alone, some thousand configurations a second
     feasible : where it has a value at all: a condition on the configuration; None: everywhere
+    small_is_good : whether it is a cost: a search makes it small
+    no_search : why a search cannot follow it, or None
+    period : of an angle: it jumps by this, which is no change and no zero; None where it is no angle
     """
 
     name: str
     unit: str
     purpose: str
-    per_mode: bool
-    reads_modes: bool
-    zero_is: str | None
-    zero_line: str | None
-    needs: Needs
-    slow: bool
-    feasible: Callable[[Configuration], Scalar] | None
     run: Callable[[Any], Scalar]
+    per_mode: bool = False
+    all_modes: bool = False
+    zero_is: str | None = None
+    zero_line: str | None = None
+    needs: Needs = _nothing
+    slow: bool = False
+    feasible: Callable[[Configuration], Scalar] | None = None
+    small_is_good: bool = False
+    no_search: str | None = None
+    period: float | None = None
+
+    @property
+    def reads_modes(self) -> bool:
+        """Whether it reads modes, one or all of them."""
+        return self.per_mode or self.all_modes
 
 
 MEASURES: dict[str, Measure] = {}
 
 
 def measure(
-    name: str,
-    *,
-    unit: str,
-    purpose: str,
-    per_mode: bool = False,
-    reads_modes: bool = False,
-    zero_is: str | None = None,
-    zero_line: str | None = None,
-    needs: Needs = _nothing,
-    slow: bool = False,
-    feasible: Callable[[Configuration], Scalar] | None = None,
+    name: str, *, unit: str, purpose: str, **facts: Any
 ) -> Callable[[Callable[[Any], Scalar]], Callable[[Any], Scalar]]:
-    """Register a generic formula under a name."""
+    """Register a generic formula under a name; facts : what else is true of it, fields of `Measure`."""
 
     def register(run: Callable[[Any], Scalar]) -> Callable[[Any], Scalar]:
-        MEASURES[name] = Measure(
-            name, unit, purpose, per_mode, per_mode or reads_modes, zero_is, zero_line, needs, slow, feasible, run
-        )
+        MEASURES[name] = Measure(name, unit, purpose, run, **facts)
         return run
 
     return register

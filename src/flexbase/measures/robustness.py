@@ -28,8 +28,9 @@ def robustness(mode: RealMode) -> Scalar:
     "worst_robustness",
     unit="m/(N s^2)",
     purpose="the smallest w_i of all modes",
-    reads_modes=True,
+    all_modes=True,
     zero_is="all modes on their robust arm configuration",
+    no_search="has kinks where modes change places; robustness takes the worst mode as well",
     needs=lambda m, n, k: None if m else "a base joint",
 )
 def worst_robustness(configuration: Configuration) -> Scalar:

@@ -13,7 +13,9 @@ HIDDEN = 1e-10  # of the strongest mode's |a||b|: a weaker mode is one that the 
     "shortage",
     unit="1",
     purpose="(1 - cos(a, b))/2 of the worst mode: 0 is positive real, 1 its opposite",
-    reads_modes=True,
+    all_modes=True,
+    small_is_good=True,
+    no_search="has kinks where modes change places; alignment is one less twice the shortage of each mode",
     needs=lambda m, n, k: None if m else "a base joint",
 )
 def shortage(configuration: Configuration) -> Scalar:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import pi
+
 from flexbase.linear.reduced import RealMode
 from flexbase.measures.registry import measure
 from flexbase.trace.algebra import Scalar, atan2, dot, mul, sub
@@ -14,6 +16,8 @@ from flexbase.trace.algebra import Scalar, atan2, dot, mul, sub
     per_mode=True,
     zero_is="the robust arm configuration",
     needs=lambda m, n, k: None if k == 2 else "two task rows",
+    no_search="is an angle with a sign; alignment is its cosine",
+    period=2.0 * pi,
 )
 def turn(mode: RealMode) -> Scalar:
     """Angle from the input shape b to the output shape a, in (-pi, pi].  [theory §4]

@@ -92,7 +92,7 @@ def _worst(result: Layout) -> Station | None:
     values = [one.value for one in reached if one.value is not None]
     if not values:
         return None
-    return reached[int(np.argmax(values) if result.small_is_good else np.argmin(values))]
+    return reached[int(np.argmax(values) if result.measure.small_is_good else np.argmin(values))]
 
 
 def robust_lines(result: Layout) -> list[Array]:

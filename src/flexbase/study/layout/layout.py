@@ -21,7 +21,7 @@ from flexbase.study.layout.search import best_place
 from flexbase.study.layout.standing import Standing, branches_of, stand
 from flexbase.study.layout.targets import Targets, make_targets
 from flexbase.study.postures.epigraph import GOALS, WORST
-from flexbase.study.postures.objective import SMALL_IS_GOOD, Objective, make_objective
+from flexbase.study.postures.objective import Objective, make_objective
 from flexbase.sweeps.caveats import check_measures
 
 
@@ -76,17 +76,12 @@ class Layout:
         """Names of the targets that have no posture in the new place."""
         return tuple(one.name for one in self.after if one.value is None)
 
-    @property
-    def small_is_good(self) -> bool:
-        """Whether the measure is a cost."""
-        return self.measure.name in SMALL_IS_GOOD
-
     def score(self, stations: Sequence[Station]) -> float | None:
         """Worst or mean value over those that are reached; None where none is. For costs the worst is the largest."""
         values = [one.value for one in stations if one.value is not None]
         if not values:
             return None
-        least = max if self.small_is_good else min
+        least = max if self.measure.small_is_good else min
         return float(least(values) if self.goal == WORST else np.mean(values))
 
     def to_dict(self) -> dict[str, Any]:

@@ -18,13 +18,6 @@ from flexbase.plant import Plant, check_plant
 from flexbase.sweeps.engine.question import Question
 from flexbase.trace.kernel import Kernel, kernel_of
 
-SMALL_IS_GOOD = ("exact_gain", "exact_radius", "algebraic_loop_radius")  # measures of cost
-REFUSED = {  # why a search cannot follow a measure
-    "turn": "is an angle with a sign; alignment is its cosine",
-    "axis_rotation": "is an angle, neither good nor bad",
-    "worst_robustness": "has kinks where modes change places; robustness takes the worst mode as well",
-    "shortage": "has kinks where modes change places; alignment is one less twice the shortage of each mode",
-}
 SHARPNESS = 20.0  # of the smooth minimum, over the spread of the values: it lies at most a twentieth of it too low
 TYPICAL = 256  # postures from which the spread is taken
 
@@ -45,7 +38,7 @@ class Objective:
     @property
     def sign(self) -> float:
         """-1 for measures of cost: their negative is made large."""
-        return -1.0 if self.measure.name in SMALL_IS_GOOD else 1.0
+        return -1.0 if self.measure.small_is_good else 1.0
 
     @cached_property
     def kernel(self) -> Kernel:
@@ -100,9 +93,8 @@ def make_objective(plant: Plant, measure: str, loop: Asked) -> Objective:
     check_plant(plant)
     arm = plant.arm
     chosen = choose("measure", measure, MEASURES)
-    if chosen.slow or measure in REFUSED:
-        why = REFUSED.get(measure, "is slow and has no derivatives")
-        raise InputError(f"measure {measure}: {why}. Give one of {', '.join(climbable())}.")
+    if chosen.no_search is not None:
+        raise InputError(f"measure {measure}: {chosen.no_search}. Give one of {', '.join(climbable())}.")
     if chosen.per_mode and arm.m == 0:
         raise InputError(f"measure {measure}: {plant.name} has a rigid base, no mode. Give manipulability.")
     return Objective(arm, chosen, loop_on(arm, loop).E)
@@ -110,4 +102,4 @@ def make_objective(plant: Plant, measure: str, loop: Asked) -> Objective:
 
 def climbable() -> list[str]:
     """Measures that a search can make large."""
-    return [name for name, one in MEASURES.items() if not one.slow and name not in REFUSED]
+    return [name for name, one in MEASURES.items() if one.no_search is None]

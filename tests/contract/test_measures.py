@@ -1,0 +1,121 @@
+"""Every registered measure: what its line in the registry says is what maps, differences and searches do with it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import flexbase as fb
+from flexbase.measures import MEASURES
+from flexbase.study.postures.objective import Objective
+from flexbase.sweeps import difference
+
+pytestmark = pytest.mark.filterwarnings("ignore::flexbase.FlexbaseWarning")  # of coupled damping: tests of the sweeps
+
+ROBOTS = ("ueda2003", "ur5e-gantry", "iiwa-platform")
+JOINTS = np.random.default_rng(7).uniform(-2.0, 2.0, (20, 7))
+
+
+def lacking(name: str, plant: fb.Plant) -> str | None:
+    return MEASURES[name].needs(plant.arm.m, plant.arm.n, plant.arm.k)
+
+
+FITTING = [(name, robot) for name in MEASURES for robot in ROBOTS if not lacking(name, fb.load(robot))]
+LACKING = [(name, robot) for name in MEASURES for robot in ROBOTS if lacking(name, fb.load(robot))]
+CLIMBED = [name for name, one in MEASURES.items() if one.no_search is None]
+
+
+@pytest.mark.parametrize("name", MEASURES)
+def test_the_line_is_whole(name: str) -> None:
+    one = MEASURES[name]
+    assert (one.name, bool(one.unit), bool(one.purpose)) == (name, True, True)
+    assert one.zero_line is None or (one.zero_is and MEASURES[one.zero_line].zero_is == one.zero_is)
+    assert (one.unit == "rad") == (one.period is not None)
+    assert not one.slow or one.no_search
+    assert not one.period or one.no_search
+
+
+@pytest.mark.parametrize(("name", "robot"), FITTING)
+def test_it_has_values_where_it_fits(name: str, robot: str) -> None:
+    """Of 20 random postures at least one has a value; an angle stays within half a period either way."""
+    plant = fb.load(robot)
+    n = plant.arm.n
+    found = fb.sweep(plant, [name], over="samples", shape=(20,), bounds=[-2.0, 2.0] * n)[name].values
+    known = found[np.isfinite(found)]
+    assert known.size
+    period = MEASURES[name].period
+    assert period is None or np.abs(known).max() <= 0.5 * period
+
+
+@pytest.mark.parametrize(("name", "robot"), LACKING)
+def test_where_it_does_not_fit_it_says_what_is_missing(name: str, robot: str) -> None:
+    plant = fb.load(robot)
+    with pytest.raises(fb.InputError, match=str(lacking(name, plant))):
+        fb.sweep(plant, [name], shape=(2, 2))
+
+
+@pytest.mark.parametrize("name", [name for name, one in MEASURES.items() if one.period])
+def test_an_angle_changes_by_the_shorter_way(paper: fb.Plant, name: str) -> None:
+    """A map against itself, each value a hair past the jump: the change is the hair."""
+    period = MEASURES[name].period
+    assert period is not None
+    before = fb.sweep(paper, [name], shape=(9, 9))
+    after = before.copy(deep=True)
+    after[name] = after[name] + period - 1e-3
+    changes = difference(before, after)[name].values
+    assert np.nanmax(np.abs(changes + 1e-3)) <= 1e-12
+
+
+@pytest.mark.parametrize("name", CLIMBED)
+def test_a_search_has_its_slopes(name: str) -> None:
+    """Derivatives by every joint against central differences on three arms, to 1e-6 of the slope's size.
+
+    Steps of 1e-5 rad: the error of the formula is some 1e-10 and that of rounding some 1e-11 of the values' curvature.
+    """
+    judged = 0
+    for robot in (robot for one, robot in FITTING if one == name):
+        arm = fb.load(robot).arm
+        objective = Objective(arm, MEASURES[name], None if "radius" not in name else 0.01 * np.eye(arm.n))
+        joints = JOINTS[:, : arm.n]
+        slopes = objective(joints)[1]
+        for i in range(arm.n):
+            step = 1e-5 * np.eye(arm.n)[i]
+            expected = (objective(joints + step)[0] - objective(joints - step)[0]) / 2e-5
+            for row in np.flatnonzero(np.isfinite(expected).all(axis=1)):
+                size = np.abs(slopes[row]).max() + np.abs(objective(joints[row : row + 1])[0]).max()
+                assert np.abs(slopes[row, :, i] - expected[row]).max() <= 1e-6 * size, (robot, row, i)
+                judged += 1
+    assert judged
+
+
+@pytest.mark.parametrize("name", CLIMBED)
+def test_a_search_makes_it_best(paper: fb.Plant, name: str) -> None:
+    """Of both sides of the elbow the search takes the smaller value of a cost, the larger one of all others."""
+    loop = fb.Gain(0.01 * np.eye(2)) if name == "algebraic_loop_radius" else None
+    found = fb.best_posture(paper, [0.33, -0.25], name, loop=loop)
+    values = [one.value for one in found.found]
+    assert len(values) == 2
+    assert values == sorted(values, reverse=not MEASURES[name].small_is_good)
+
+
+@pytest.mark.parametrize("name", [name for name in MEASURES if name not in CLIMBED])
+def test_a_search_says_why_it_cannot_follow(paper: fb.Plant, name: str) -> None:
+    for search in (
+        lambda: fb.best_posture(paper, [0.33, -0.25], name),
+        lambda: fb.best_layout(paper, [[0.33, -0.25]], name),
+    ):
+        with pytest.raises(fb.InputError) as caught:
+            search()
+        assert str(caught.value).startswith(f"measure {name}: {MEASURES[name].no_search}. Give one of ")
+
+
+def test_a_new_measure_needs_one_line(paper: fb.Plant, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A throw-away cost with a period, registered here: searches, differences and maps know it."""
+    new = MEASURES["alignment"]._replace(name="new", small_is_good=True, period=4.0)
+    monkeypatch.setitem(MEASURES, "new", new)
+    found = fb.best_posture(paper, [0.33, -0.25], "new")
+    assert [one.value for one in found.found] == sorted(one.value for one in found.found)
+    chart = fb.sweep(paper, ["new"], shape=(5, 5))
+    moved = chart.copy(deep=True)
+    moved["new"] = moved["new"] + 3.9
+    assert np.nanmax(np.abs(difference(chart, moved)["new"].values + 0.1)) <= 1e-12
