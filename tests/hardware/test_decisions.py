@@ -178,15 +178,21 @@ def test_what_counts_as_heard_and_as_close(verdict: HardwareVerdict) -> None:
 
 
 def test_a_new_figure_is_found_everywhere(paper_pose: fb.Pose, monkeypatch: pytest.MonkeyPatch) -> None:
-    """One registry line: verdict, document and attribute have it. Maps and studies read the same registry on import."""
-    monkeypatch.setitem(
-        figures.FIGURES,
-        "twice_radius",
-        figures.Figure("twice_radius", "1", "", True, True, lambda one: 2.0 * one.radius),
-    )
+    """One registry line: verdict, document, attribute and sheets have it. Maps and studies read the same on import."""
+    twice = figures.Figure("twice_radius", "1", "twice the radius", True, True, lambda one: 2.0 * one.radius)
+    monkeypatch.setitem(figures.FIGURES, "twice_radius", twice)
     controller = fb.make_controller(paper_pose, "none", FAST)
     found = verdict_of(Judged(controller, robots_at(paper_pose, controller.sensing)), brief=True)
     assert found.twice_radius == 2.0 * found.to_dict()["spectral_radius"] == found.to_dict()["twice_radius"]
+    assert f"twice radius        {found.twice_radius:.6g}" in found.summary()
+    said = fb.compare(paper_pose, ["none"], FAST).summary()
+    assert f"twice the radius  none {found.twice_radius:.4g}" in said  # without a column: below the table
+    column = figures.Shown("twice", "per cent", "of itself", lambda value: f"{100.0 * value:.0f}")
+    monkeypatch.setitem(figures.FIGURES, "twice_radius", twice._replace(shown=column))
+    said = fb.compare(paper_pose, ["none"], FAST).summary()
+    assert "[per cent]" in said
+    assert "twice: of itself" in said
+    assert f"{100.0 * found.twice_radius:.0f}" in said
     del figures.FIGURES["twice_radius"]
     from flexbase.study.running import hardware_map, hardware_study
 

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import ClassVar
 
 from flexbase.plant import Pose
 from flexbase.sampled.changes import Changed
 from flexbase.sampled.controller import SampledController
 from flexbase.sampled.figures import FIGURES
 from flexbase.sampled.judged import GOOD_MARGIN, SAFE, STABLE, UNSTABLE, Judged, judged
+from flexbase.sheets.numbers import number
+from flexbase.sheets.sheet import BAD, GOOD, Answer, Sheet, facts, make_sheet
+from flexbase.sheets.told import Told
 
 
 @dataclass(frozen=True)
-class HardwareVerdict:
+class HardwareVerdict(Told):
     """What a sampled loop does at a pose, and what it bears. Every figure of `FIGURES` is an attribute too.
 
     stable : spectral radius below 1
@@ -28,6 +31,8 @@ class HardwareVerdict:
     failed: tuple[str, ...]
     worst_change: str
     figures: dict[str, float | None]
+
+    document: ClassVar = ("method", "stable", "survives", "failed", "worst_change", "*figures")
 
     def __getattr__(self, name: str) -> float | None:
         if name in FIGURES and "figures" in vars(self):
@@ -54,24 +59,24 @@ class HardwareVerdict:
         """Stable, with good disk margins, and on all changed robots stable."""
         return self.grade == SAFE
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers."""
-        said = {name: value for name, value in vars(self).items() if name != "figures"}
-        return {**said, "failed": list(self.failed), **self.figures}
-
-    def summary(self) -> str:
-        """What a person needs, in four lines."""
+    @property
+    def statement(self) -> str:
+        """The verdict in one sentence."""
         if not self.stable:
-            return f"{self.method}: unstable as it runs, spectral radius {self.spectral_radius:.4f} a sample"
-        delay = "" if self.delay_margin_s is None else f"further delay {1e3 * self.delay_margin_s:.3f} ms; "
-        kept = "survives all changes of the robot" if self.survives else f"fails with {', '.join(self.failed)}"
-        return (
-            f"{self.method}: stable, time constant {1e3 * (self.time_constant_s or 0.0):.1f} ms\n"
-            f"  disk margin {self.disk_margin_torque:.3f} at torques, {self.disk_margin_sensor:.3f} at sensors\n"
-            f"  {delay}{kept}\n"
-            f"  tip stiffness {self.tip_stiffness:.4g} N/m at rest, {self.dynamic_stiffness:.4g} N/m at worst; "
-            f"corrects {100.0 * (self.tip_correction or 0.0):.0f} % of a tip error that the joints do not show"
-        )
+            return f"unstable as it runs: spectral radius {self.spectral_radius:.4f} a sample"
+        size = f"disk margin {self.smaller_margin:.2f}" + ("" if self.has_margin else f", below {GOOD_MARGIN:g}")
+        changed = "survives changes of the robot" if self.survives else f"fails with {', '.join(self.failed)}"
+        return f"stable as it runs, {size}; {changed}"
+
+    def answer(self) -> Answer:
+        """The sentence, good where the loop is safe."""
+        return Answer(GOOD if self.safe else BAD, self.statement[0].upper() + self.statement[1:])
+
+    def sheet(self) -> Sheet:
+        """The sentence, and every figure that has a meaning."""
+        told = [(one, self.figures[name]) for name, one in FIGURES.items() if self.figures.get(name) is not None]
+        rows = [(one.words, f"{number(value, 6)} {one.unit}".removesuffix(" 1")) for one, value in told]
+        return make_sheet(self.method, "as it runs", self.answer(), facts(*rows))
 
 
 def hardware_verdict(

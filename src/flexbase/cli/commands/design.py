@@ -11,7 +11,7 @@ from flexbase.cli.options.gains import GainOptions
 from flexbase.cli.options.method import MethodOptions
 from flexbase.cli.options.pose import PoseOptions, Robot
 from flexbase.cli.options.sensing import SensingOptions
-from flexbase.cli.terminal import as_it_runs as hardware
+from flexbase.cli.terminal import screen
 from flexbase.cli.terminal.certificate import tables
 from flexbase.cli.terminal.document import document
 from flexbase.cli.terminal.out import PICTURES, OutFile, check_out, written
@@ -65,7 +65,9 @@ def design(
     if out is not None:
         found.save(out)
     real = as_it_runs(at, Loop(found, gains, sensing))
-    put(document("design", {**found.to_dict(), **hardware.content(real)})) if json else put(
-        *tables(found, units.common("inertia", kinds)), *hardware.lines(real), *written(out)
-    )
+    if json:
+        put(document("design", {**found.to_dict(), "hardware": real and real.to_dict()}))
+    else:
+        put(*tables(found, units.common("inertia", kinds)))
+        screen.put(*(("", real.sheet()) if real else ()), *written(out))
     return 0

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import dataclass
+from typing import ClassVar
 
 from flexbase.model.loop import Asked, loop_on
 from flexbase.model.sensing import Sensing
 from flexbase.plant import Pose, check_pose
 from flexbase.sampled.controller import pd_with_gain
-from flexbase.sampled.judged import GOOD_MARGIN
 from flexbase.sampled.verdict import HardwareVerdict, hardware_verdict
+from flexbase.sheets.sheet import Note, Sheet, facts, make_sheet
+from flexbase.sheets.told import Told
 
 
 @dataclass(frozen=True)
-class AsItRuns:
+class AsItRuns(Told):
     """A compensator with task PD in the loop that a project declares, or in a typical one.
 
     declared : whether project or caller said how the loop runs
@@ -24,34 +25,22 @@ class AsItRuns:
     sensing: Sensing
     declared: bool
 
+    document: ClassVar = ("declared", "sensing", "statement=verdict.statement", "*verdict")
+
     @property
     def good(self) -> bool:
         """Stable, with both disk margins, on the changed robots too."""
         return self.verdict.safe
 
     @property
-    def statement(self) -> str:
-        """The verdict in one sentence."""
-        found = self.verdict
-        if not found.stable:
-            return f"unstable as it runs: spectral radius {found.spectral_radius:.4f} a sample"
-        size = f"disk margin {found.smaller_margin:.2f}" + ("" if found.has_margin else f", below {GOOD_MARGIN:g}")
-        changed = "survives changes of the robot" if found.survives else f"fails with {', '.join(found.failed)}"
-        return f"stable as it runs, {size}; {changed}"
-
-    @property
     def loop(self) -> str:
         """The loop in a line, and whether it was assumed."""
         return self.sensing.summary() + ("" if self.declared else " (assumed: the project has no [sensing])")
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers."""
-        said = {"declared": self.declared, "sensing": asdict(self.sensing), "statement": self.statement}
-        return {**said, **self.verdict.to_dict()}
-
-    def summary(self) -> str:
-        """Two lines."""
-        return f"{self.statement}\n  {self.loop}"
+    def sheet(self) -> Sheet:
+        """Whether it runs, in which loop, and what to do where it does not."""
+        mend = None if self.good else Note("flexbase hardware compares what is made for this loop.")
+        return make_sheet("As it runs", self.verdict.method, self.verdict.answer(), facts(("loop", self.loop)), mend)
 
 
 def as_it_runs(pose: Pose, loop: Asked) -> AsItRuns | None:

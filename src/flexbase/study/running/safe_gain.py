@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import asdict, dataclass
-from typing import Any
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,6 +13,9 @@ from flexbase.model.loop import Asked, loop_on
 from flexbase.model.task import Gains
 from flexbase.plant import Pose, check_pose
 from flexbase.sampled.judged import Judged, Robots, robots_at
+from flexbase.sheets.numbers import number
+from flexbase.sheets.sheet import Column, Sheet, make_sheet, table, words
+from flexbase.sheets.told import Told
 from flexbase.synthesis import HARDWARE_METHODS, controller_for
 
 SMALLEST, LARGEST, LOOKS = 1e-3, 1e2, 11  # scales looked at first: a factor of about 3 apart
@@ -21,7 +23,7 @@ HALVINGS = 5  # of the last factor: to 4 %
 
 
 @dataclass(frozen=True)
-class SafeGain:
+class SafeGain(Told):
     """The largest scale s of the gains (s Kp, sqrt(s) Kv) up to which a method was found to do; None: at none.
 
     safe : stable, both disk margins 0.3 or more, and stable on all changed robots; stable : merely stable
@@ -35,15 +37,29 @@ class SafeGain:
     safe_stiffness: float | None
     unsafe_below: bool
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers."""
-        return asdict(self)
+    def sheet(self) -> Sheet:
+        """A table of one row."""
+        return sheet_of_gains([self])
 
-    def summary(self) -> str:
-        """One line."""
-        safe = "none" if self.safe is None else f"{self.safe:.3g} times the gains, {self.safe_stiffness:.3g} N/m"
-        stable = "none" if self.stable is None else f"{self.stable:.3g} times"
-        return f"{self.method}: safe up to {safe}; stable up to {stable}"
+
+def sheet_of_gains(found: Sequence[SafeGain]) -> Sheet:
+    """The highest safe and the highest stable scale of the gains, a row a method."""
+    rows = [
+        (
+            f"{one.method}{' (not below all of it)' if one.unsafe_below else ''}",
+            *(("none", "-") if one.safe is None else (number(one.safe, 3), number(one.safe_stiffness, 3))),
+            "none" if one.stable is None else number(one.stable, 3),
+        )
+        for one in found
+    ]
+    columns = (
+        words("method"),
+        Column("safe up to", "times the gains"),
+        Column("stiffness there", "N/m"),
+        Column("stable up to", "times the gains"),
+    )
+    asked = f"(s Kp, root of s Kv), s from {SMALLEST:g} to {LARGEST:g}"
+    return make_sheet("Highest gains", asked, table(columns, rows))
 
 
 def safe_gain(pose: Pose, method: str = "none", loop: Asked = None) -> SafeGain:
