@@ -108,6 +108,14 @@ def null_space_damping(
     return NullSpaceDamping(pose, W, omega**2 * eye, 2.0 * zeta * omega * eye)
 
 
+def self_motion_damping(pose: Pose, loop: Asked = None, *, frequency: float) -> tuple[NullSpaceDamping, str]:
+    """`null_space_damping` as it is by default; where that does not exist the consistent kind, and why ("" elsewhere)."""
+    try:
+        return null_space_damping(pose, loop, frequency=frequency), ""
+    except Infeasible as fault:
+        return null_space_damping(pose, loop, frequency=frequency, kind="consistent"), str(fault)
+
+
 def shares_one_beta(pose: Pose, E: Array) -> bool:
     """Whether V = beta Jp with one beta outside [0, 1], so that the consistent kind is safe.  [theory §7]"""
     m = pose.arm.m

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from flexbase.cautions import caution
 from flexbase.checks import Array
-from flexbase.errors import FlexbaseWarning
 from flexbase.linear.linearise import (
     ReducedArrays,
     check_definite_inertia,
@@ -131,9 +130,7 @@ def modes(pose: Pose, loop: Asked = None) -> Modes:
     found, rigid_mode, caveat = analyse(pose, E)
     overdamped = [mode.label for mode in found if mode.damping_ratio >= 1.0]
     if overdamped:
-        warnings.warn(
-            f"{pose.plant.name}: overdamped base, real poles at {', '.join(overdamped)}.", FlexbaseWarning, stacklevel=2
-        )
+        caution(f"{pose.plant.name}: overdamped base, real poles at {', '.join(overdamped)}.")
     verdict = all(_is_positive(mode) for mode in found)
     if caveat in (PROPORTIONAL, INDICATOR) and _shares_one_beta(reduced_arrays(pose, E)):
         verdict, caveat = True, ONE_BETA

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from flexbase.cautions import caution
 from flexbase.control.joint_tracking import JointTracking
-from flexbase.control.null_space import Law, Sum, null_space_damping
+from flexbase.control.null_space import Law, Sum, self_motion_damping
 from flexbase.control.task_pd import TaskPD
 from flexbase.control.trajectories import LAWS, JointPath
-from flexbase.errors import Infeasible
 from flexbase.model.loop import Gain, LoopSpec
 from flexbase.plant import Pose
 from flexbase.simulation.move import IdealMove
@@ -25,9 +24,7 @@ def settling_law(goal: Pose, loop: LoopSpec, move: IdealMove) -> Law:
     task = TaskPD(goal, loop.gains)
     if goal.arm.n <= goal.arm.k or move.self_motion == 0.0:
         return task
-    gain = Gain(loop.gain)
-    try:
-        return Sum(task, null_space_damping(goal, gain, frequency=move.self_motion))
-    except Infeasible as fault:
-        caution(f"{fault} The consistent kind is used, without that promise.")
-        return Sum(task, null_space_damping(goal, gain, frequency=move.self_motion, kind="consistent"))
+    damping, why = self_motion_damping(goal, Gain(loop.gain), frequency=move.self_motion)
+    if why:
+        caution(f"{why} The consistent kind is used, without that promise.")
+    return Sum(task, damping)

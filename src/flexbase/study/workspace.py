@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import warnings
-
 import numpy as np
 
+from flexbase.cautions import collected
 from flexbase.dynamics.inverse.two_joint_arm import two_joint_arm
-from flexbase.errors import FlexbaseWarning, InputError, SingularArm, Unreachable
+from flexbase.errors import InputError, SingularArm, Unreachable
 from flexbase.plant import Plant, Pose
 
 RIM = 0.02  # of the reach: kept clear of the edges of a planar arm's ring, where it is singular
@@ -28,8 +27,7 @@ def random_poses(plant: Plant, count: int, seed: int = 0) -> list[Pose]:
     found: list[Pose] = []
     for _ in range(TRIES * count):
         try:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", FlexbaseWarning)
+            with collected(quietly=True):
                 if planar is None:
                     found.append(plant.at(rng.uniform(-BENT, BENT, arm.n)))
                 else:

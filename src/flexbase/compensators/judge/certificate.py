@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import warnings
-
 import numpy as np
 
+from flexbase.cautions import caution
 from flexbase.checks import Array, check_symmetric, finite_array
 from flexbase.compensators.judge.lag_law import lag_limit
 from flexbase.compensators.judge.statement import statement
 from flexbase.control.compensator import Certificate, Compensator
-from flexbase.errors import FlexbaseWarning
 from flexbase.linear.linearise import is_reducible, modified_inertia
 from flexbase.linear.margins import (
     algebraic_loop_radius,
@@ -42,7 +40,7 @@ def certify(
     target_residual : how far the method's own equations are from holding; None if the gain was not designed here
     gains : for the closed loop; the project's own if left out
     cautions : the method's own; they take the place of the general one about missed targets
-    Warns when the algebraic loop does not bear a common delay.
+    Cautions when the algebraic loop does not bear a common delay.
     """
     E = check_symmetric("E", finite_array("E", E), "")
     gains = loop_on(pose.arm, Loop(gains=gains)).given_gains
@@ -54,8 +52,8 @@ def certify(
         *_cautions_of_inertia(pose, E),
         *_cautions_of_arm(pose),
     )
-    for caution in cautions:
-        warnings.warn(caution, FlexbaseWarning, stacklevel=4)
+    for text in cautions:
+        caution(text)
     certificate = Certificate(
         min_eig_modified_inertia=float(np.linalg.eigvalsh(modified_inertia(pose, E))[0]),
         robustness_before=tuple(mode.robustness for mode in before),

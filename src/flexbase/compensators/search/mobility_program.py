@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -222,20 +221,16 @@ class MobilityProgram:
         return self.run(self.cp.Problem(objective, constraints))
 
     def run(self, problem: Any) -> float | None:
-        """`solve` of a problem that was stated before."""
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # cvxpy says "inaccurate" here; certificates judge the result itself
-            try:
-                value = problem.solve(solver=self.cp.CLARABEL)
-            except self.cp.error.SolverError as fault:
-                raise Infeasible(
-                    f"the solver Clarabel gave up at this pose ({fault}). Give another pose or another radius."
-                ) from fault
-        if problem.status in IMPOSSIBLE:
-            return None
-        if problem.status not in SOLVED:
-            raise Infeasible(f"the solver Clarabel ended with {problem.status}. Give another pose or another radius.")
-        return float(value)
+        """`solve` of a problem that was stated before.
+
+        In cvxpy's own steps: its `solve` warns of an inaccurate end, process-wide; certificates judge the result itself.
+        """
+        data, chain, inverse = problem.get_problem_data(self.cp.CLARABEL)
+        found = chain.invert(chain.solve_via_data(problem, data, warm_start=True), inverse)
+        if found.status not in (*IMPOSSIBLE, *SOLVED):
+            raise Infeasible(f"the solver Clarabel ended with {found.status}. Give another pose or another radius.")
+        problem.unpack(found)
+        return None if found.status in IMPOSSIBLE else float(problem.value)
 
 
 def lagged_directions(program: MobilityProgram, law: LagLaw, shapes: Array) -> list[LaggedDirection]:

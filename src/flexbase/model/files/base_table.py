@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from flexbase.cautions import caution
 from flexbase.checks import FARTHEST, Array, check_length, check_within
-from flexbase.errors import FlexbaseWarning, InputError, nearest_name
+from flexbase.errors import InputError, nearest_name
 from flexbase.model.base import Base, make_base
 from flexbase.model.files.robot_table import inertia_matrix
 from flexbase.model.files.schema import BaseTable
@@ -71,7 +71,7 @@ def _with_added_joints(table: BaseTable, arm: Mechanism, foot: Foot, source: str
         if names.count(name) > 1:
             raise InputError(f'{source}, [[base.joint]] name: "{name}" is given twice. Rename one.')
     for note in foot.notes:
-        warnings.warn(note, FlexbaseWarning, stacklevel=2)
+        caution(note)
     mount = _mount(table, source)
     body = welded(_body(table, source), mount.carry(foot.body))
     placement_rotation, placement_position = arm.placement_rotation.copy(), arm.placement_position.copy()
@@ -146,10 +146,8 @@ def _springs(
     check_within(f"{where}reference", arm, FARTHEST, "rad or m")
     inertia = np.diag(inertia_at(mechanism, np.concatenate([equilibrium, arm])))[:m]
     stiffness, damping = omega**2 * inertia, 2.0 * zeta * omega * inertia
-    warnings.warn(
+    caution(
         f"{where}frequency: taken as stiffness {np.round(stiffness, 6).tolist()} and damping "
         f"{np.round(damping, 6).tolist()}, each joint alone with the arm locked at {arm.tolist()}.",
-        FlexbaseWarning,
-        stacklevel=2,
     )
     return stiffness, damping

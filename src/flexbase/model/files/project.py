@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import tomllib
-import warnings
 from importlib import resources
 from pathlib import Path
 
 from pydantic import ValidationError
 
+from flexbase.cautions import caution
 from flexbase.checks import check_length
-from flexbase.errors import FlexbaseWarning, InputError, nearest_name
+from flexbase.errors import InputError, nearest_name
 from flexbase.model.files.base_table import InertiaAt, base_of
 from flexbase.model.files.messages import first_fault
 from flexbase.model.files.robot_table import mechanism_of
@@ -102,7 +102,7 @@ def _build(project: ProjectFile, source: str, inertia_at: InertiaAt | None, fold
     mechanism, foot = mechanism_of(project.robot, len(table.joints), source, folder)
     mechanism, base = base_of(table, mechanism, foot, source, inertia_at)
     if base.m == 0:
-        warnings.warn(f"{source}: no [base] joints: a rigid base, without modes.", FlexbaseWarning, stacklevel=2)
+        caution(f"{source}: no [base] joints: a rigid base, without modes.")
     task = _task(project, mechanism.N - base.m, source)
     gravity = check_length(f"{source}, gravity", project.gravity, 3, "x y z")
     sensing = sensing_of(project.sensing, mechanism.N - base.m, source)

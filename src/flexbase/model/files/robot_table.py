@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
+from flexbase.cautions import caution
 from flexbase.checks import Array, check_length
-from flexbase.errors import FlexbaseWarning, InputError
+from flexbase.errors import InputError
 from flexbase.model.files.planar import planar
 from flexbase.model.files.schema import RobotTable
 from flexbase.model.formats.chain import NOTHING, Foot
@@ -81,14 +81,10 @@ def _from_file(table: RobotTable, source: str, folder: Path | None, base_joints:
         bare = Path(source).name == file
         raise fault if bare else InputError(f"{source}, [robot] file: {fault}") from fault
     for note in (note for note in found.notes if not (table.file_friction and "file_friction" in note)):
-        warnings.warn(f"{file}: {note}", FlexbaseWarning, stacklevel=2)
+        caution(f"{file}: {note}")
     if found.stiffness.any():
         stiff = [name for name, k in zip(found.mechanism.joint_names, found.stiffness, strict=True) if k]
-        warnings.warn(
-            f"{file}: its joint stiffness ({', '.join(stiff)}) is left out: only [base] stiffness counts.",
-            FlexbaseWarning,
-            stacklevel=2,
-        )
+        caution(f"{file}: its joint stiffness ({', '.join(stiff)}) is left out: only [base] stiffness counts.")
     friction = np.where(np.arange(found.mechanism.N) < base_joints, 0.0, found.friction * table.file_friction)
     foot = found.foot._replace(notes=tuple(f"{file}: {note}" for note in found.foot.notes))
     return replace(found.mechanism, armature=found.armature, friction=friction), foot

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from flexbase.cautions import collected
 from flexbase.errors import FlexbaseError
 from flexbase.model.loop import loop_on
 from flexbase.model.sensing import Sensing
@@ -106,8 +106,7 @@ def draw_case(pose: Pose, number: int, attempt: int, seed: int, methods: tuple[s
     change = changes[rng.integers(len(changes))] if rng.random() < 0.5 else Changed("none")
     drive = float(np.exp(rng.uniform(*np.log(DRIVE)))) if rng.random() < 0.5 else 1.0
     scaled = loop_on(pose.arm).scaled(scale)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # cautions of designs: the outcome is what counts here
+    with collected(quietly=True):  # cautions of designs: the outcome is what counts here
         try:
             controller = _driven(HARDWARE_METHODS[method].make(pose, sensing, scaled), drive)
             real = changed_pose(pose, change)

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.stats import spearmanr
 
+from flexbase.cautions import collected
 from flexbase.checks import Array
 from flexbase.compensators import design
 from flexbase.compensators.methods.exact import compensability
-from flexbase.errors import FlexbaseWarning, Infeasible, InputError
+from flexbase.errors import Infeasible, InputError
 from flexbase.linear.modal import modes
 from flexbase.measures.manipulability import Manipulability, manipulability
 from flexbase.model.loop import Gain
@@ -135,8 +135,7 @@ def ellipse_field(
 def _designed(pose: Pose, method: str, frequency: float, **options: str) -> tuple[Array | None, str]:
     """E, or None, and a status."""
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", FlexbaseWarning)
+        with collected(quietly=True):
             found = design(pose, method, natural_frequency=frequency, **options)
     except Infeasible:
         if method == "recursive":

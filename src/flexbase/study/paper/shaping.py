@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import time
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
+from flexbase.cautions import collected
 from flexbase.checks import Array
 from flexbase.compensators import design
 from flexbase.compensators.judge.certificate import certify
 from flexbase.control.compensator import Compensator
-from flexbase.errors import FlexbaseWarning
 from flexbase.plant import Pose
 from flexbase.study.paper import printed
 from flexbase.study.paper.example import TARGET_FREQUENCY
@@ -50,8 +49,7 @@ class Shaping:
 
 def shaping(pose: Pose, seed: int = 0) -> Shaping:
     """Design at the paper's pose by both methods. The warnings about delays stay in the certificates."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", FlexbaseWarning)
+    with collected(quietly=True):
         recursion, recursion_seconds = _timed(
             lambda: design(pose, "recursive", natural_frequency=TARGET_FREQUENCY, seed=seed)
         )

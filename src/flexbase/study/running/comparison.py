@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from flexbase.cautions import collected
 from flexbase.checks import choose
-from flexbase.errors import FlexbaseWarning, Infeasible, InputError, MissingExtra
+from flexbase.errors import Infeasible, InputError, MissingExtra
 from flexbase.model.loop import Asked, loop_on
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
@@ -89,8 +89,7 @@ def compare(pose: Pose, methods: Sequence[str] | None = None, loop: Asked = None
 
 def _contender(pose: Pose, name: str, sensing: Sensing, gains: Gains) -> Contender:
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", FlexbaseWarning)  # of ideal designs; the verdict says it better
+        with collected(quietly=True):  # of ideal designs; the verdict says it better
             return Contender(name, hardware_verdict(controller_for(pose, name, sensing, gains)))
     except (Infeasible, InputError, MissingExtra) as reason:
         return Contender(name, None, str(reason))

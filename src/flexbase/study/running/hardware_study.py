@@ -8,8 +8,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from flexbase.cautions import collected
 from flexbase.checks import choose
-from flexbase.errors import FlexbaseError, FlexbaseWarning
+from flexbase.errors import FlexbaseError
 from flexbase.model.loop import Asked, LoopSpec, loop_on
 from flexbase.plant import Plant, Pose, check_plant
 from flexbase.sampled.figures import FIGURES
@@ -155,8 +156,9 @@ def outcomes_of(task: Task) -> tuple[str, list[Outcome]]:
 def _outcome(pose: Pose, name: str, setting: Setting, loop: LoopSpec) -> Outcome:
     gains = loop.scaled(setting.scale)
     try:
-        controller = HARDWARE_METHODS[name].make(pose, replace(loop.sensing, rate=setting.rate), gains)
-    except (FlexbaseError, FlexbaseWarning, np.linalg.LinAlgError):
+        with collected(quietly=True):  # cautions of ideal designs: the outcome is what counts here
+            controller = HARDWARE_METHODS[name].make(pose, replace(loop.sensing, rate=setting.rate), gains)
+    except (FlexbaseError, np.linalg.LinAlgError):
         return NO_DESIGN
     found = judged(controller, pose)
     tip = {one: found.figure(one) for one in TOLD} if found.stable else {}

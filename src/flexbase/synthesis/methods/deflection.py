@@ -6,14 +6,14 @@ tau_a = (I - E Ms^-1)^-1 [tau~ + E Ms^-1 Map Mpp^-1 (Kp q_p + Dp q_p')],  q_p = 
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 
 import numpy as np
 
+from flexbase.cautions import collected
 from flexbase.checks import Array, check_symmetric, finite_array
 from flexbase.compensators.registry import design
-from flexbase.errors import FlexbaseError, FlexbaseWarning, Infeasible, InputError
+from flexbase.errors import FlexbaseError, Infeasible, InputError
 from flexbase.linear.discrete.affine_loop import AffineLoop
 from flexbase.linear.discrete.system import Discrete, delay, series, side_by_side, static
 from flexbase.linear.margins import arm_on_free_base
@@ -138,8 +138,7 @@ def _starts(pose: Pose) -> list[Array]:
 
 def _ideal(pose: Pose) -> Array:
     """The design for ideal acceleration, or nothing where there is none."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", FlexbaseWarning)  # its radius is no matter here: no acceleration is fed back
+    with collected(quietly=True):  # its radius is no matter here: no acceleration is fed back
         try:
             return design(pose).E
         except FlexbaseError:

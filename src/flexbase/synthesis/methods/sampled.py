@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 
 import numpy as np
 
+from flexbase.cautions import collected
 from flexbase.checks import Array
 from flexbase.compensators.judge.implementable import RADIUS
 from flexbase.compensators.registry import design
-from flexbase.errors import FlexbaseWarning, Infeasible, InputError, MissingExtra
+from flexbase.errors import Infeasible, InputError, MissingExtra
 from flexbase.linear.discrete.affine_loop import AffineLoop, Piece
 from flexbase.linear.discrete.system import Discrete, series, side_by_side, static
 from flexbase.linear.margins import arm_on_free_base
@@ -264,8 +264,7 @@ def ideal_gain(pose: Pose) -> Array | None:
         tries.insert(0, ("exact", {"natural_frequency": modes(pose)[0].frequency + 100.0}))
     for method, options in tries:
         try:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", FlexbaseWarning)  # a start: what comes of it is judged by itself
+            with collected(quietly=True):  # a start: what comes of it is judged by itself
                 return design(pose, method=method, **options).E
         except (Infeasible, InputError, MissingExtra):
             continue
