@@ -236,7 +236,7 @@ def test_the_solver_giving_up_is_an_answer(paper_pose, monkeypatch):
     def give_up(*_, **__):
         raise cvxpy.error.SolverError("no luck")
 
-    monkeypatch.setattr(cvxpy.Problem, "solve", give_up)
+    monkeypatch.setattr(cvxpy.Problem, "get_problem_data", give_up)
     with pytest.raises(Infeasible, match="Clarabel gave up at this pose"):
         solve(paper_pose)
 

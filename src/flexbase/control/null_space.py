@@ -109,7 +109,7 @@ def null_space_damping(
 
 
 def self_motion_damping(pose: Pose, loop: Asked = None, *, frequency: float) -> tuple[NullSpaceDamping, str]:
-    """`null_space_damping` as it is by default; where that does not exist the consistent kind, and why ("" elsewhere)."""
+    """`null_space_damping` as by default; where that does not exist the consistent kind, and why ("" elsewhere)."""
     try:
         return null_space_damping(pose, loop, frequency=frequency), ""
     except Infeasible as fault:

@@ -10,7 +10,6 @@ import numpy as np
 
 from flexbase.checks import Array
 
-JOINT_TYPES = ("revolute", "prismatic")
 ROUNDING = 1e-15  # an entry of a rotation below which it is zero
 
 

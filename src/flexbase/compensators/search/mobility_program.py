@@ -223,10 +223,15 @@ class MobilityProgram:
     def run(self, problem: Any) -> float | None:
         """`solve` of a problem that was stated before.
 
-        In cvxpy's own steps: its `solve` warns of an inaccurate end, process-wide; certificates judge the result itself.
+        In cvxpy's own steps: its `solve` warns of inaccurate ends, process-wide; certificates judge the result itself.
         """
-        data, chain, inverse = problem.get_problem_data(self.cp.CLARABEL)
-        found = chain.invert(chain.solve_via_data(problem, data, warm_start=True), inverse)
+        try:
+            data, chain, inverse = problem.get_problem_data(self.cp.CLARABEL, solver_opts={})
+            found = chain.invert(chain.solve_via_data(problem, data, warm_start=True, solver_opts={}), inverse)
+        except (self.cp.error.SolverError, ValueError) as fault:  # ValueError: numbers that overflow
+            raise Infeasible(
+                f"the solver Clarabel gave up at this pose ({fault}). Give another pose or another radius."
+            ) from fault
         if found.status not in (*IMPOSSIBLE, *SOLVED):
             raise Infeasible(f"the solver Clarabel ended with {found.status}. Give another pose or another radius.")
         problem.unpack(found)
