@@ -27,28 +27,10 @@ def paper_pose(paper: Plant) -> Pose:
     return paper.at_tip(PAPER_TIP)
 
 
-# `pytest --core` is for an installation without extras. Only there is a test that asks for one left out; what must run
+# `pytest --core` is for an installation without extras. Only there is a test left out that asks for one; what must run
 # without them is in tests/core, and fails if it asks.
-
-
-    "casadi",
-    "clarabel",
-    "control",
-    "cvxopt",
-    "cvxpy",
-    "dask",
-    "distributed",
-    "jsonschema",
-    "llvmlite",
-    "mujoco",
-    "pinocchio",
-    "plotly",
-    "zarr",
-]
-
-EXTRAS = """
-casadi clarabel control cvxopt cvxpy dask distributed jsonschema llvmlite mujoco pinocchio plotly zarr
-""".split()
+EXTRAS = {"casadi", "clarabel", "control", "cvxopt", "cvxpy", "dask", "distributed"}
+EXTRAS |= {"jsonschema", "llvmlite", "mujoco", "pinocchio", "plotly", "zarr"}
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -80,6 +80,7 @@ def test_the_choice_falls_back_on_a_part_or_on_nothing():
     assert np.array_equal(least_lacking(pose, [bad, none]), none)
 
 
+@pytest.mark.slow
 def test_frequencies_that_cost_passivity_are_refused():
     """With the frequencies bound no part of a gain will do: refused, with both shortages, where it would be worse."""
     refused = 0

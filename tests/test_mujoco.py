@@ -330,6 +330,7 @@ def stepped(start, goal, E, step):
     return np.array([*errors, loop.measured(model, data).tip_error])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["paper", "paper, compensated", "sliding, gravity", "3-D 2+4", "3-D 2+4, compensated"])
 def test_the_same_motion_by_mujocos_own_integrator(name, builtin_runs):
     """MuJoCo steps itself, with the law at every stage of its Runge-Kutta steps: tips within 1e-6 m of ours."""

@@ -36,7 +36,7 @@ def compensator(paper_pose):
     return fb.design(paper_pose, "exact", natural_frequency=346.8)
 
 
-@pytest.mark.parametrize("trajectory", ["quintic", "trapezoidal"])
+@pytest.mark.parametrize("trajectory", ["quintic", pytest.param("trapezoidal", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("compensate", [None, "settle", "always"])
 def test_runs_are_those_of_simulate(paper, compensator, compensate, trajectory):
     """End, peak and settling time of the paper's arm, the last to a sample of the one and a step of the other."""

@@ -107,6 +107,7 @@ def test_ur5e_on_its_two_joint_bases(base):
         assert passivity(pose, np.zeros((6, 6))) < -1e-3
 
 
+@pytest.mark.slow
 def test_the_smallest_radius_of_a_refusal_is_sharp():
     """Just above the radius that the refusal names there is a gain, two hundredths below there is none.
 
@@ -126,6 +127,7 @@ def test_the_smallest_radius_of_a_refusal_is_sharp():
     raise AssertionError("no refusal to test")
 
 
+@pytest.mark.slow
 def test_random_search_finds_no_gain_where_the_scan_finds_none():
     """The scan's no is a no: 20 descents from random starts reach no alignment there either."""
     rng = np.random.default_rng(0)
@@ -155,6 +157,7 @@ def test_the_damping_bound_is_the_matrix_condition():
     assert damping_ratio_bound(np.ones((2, 2))) == 1.0
 
 
+@pytest.mark.slow
 def test_a_statement_is_never_more_than_the_sweep_shows():
     """Random gains and designed ones, all dampings: "positive real" in words exactly where the sweep finds it so."""
     positive = negative = 0

@@ -65,6 +65,7 @@ def test_tables_fit_and_name_what_counts(call: Call, job: Path) -> None:
             assert word in shown.out
 
 
+@pytest.mark.slow
 def test_files(call: Call, tmp_path: Path, job: Path) -> None:
     for words in (
         ("posture", "ueda2003", "--tip", "0.33,-0.25"),

@@ -59,6 +59,7 @@ def test_wrong_words(call: Call, words: tuple[str, ...], match: str) -> None:
     assert shown.out == ""
 
 
+@pytest.mark.slow
 def test_agreement_in_json_and_in_words(call: Call, tmp_path: Path) -> None:
     words = ("study", "agreement", "ueda2003", "--poses", "8", "--methods", "none,lqg", "--workers", "1")
     shown = call(*words, "--json")

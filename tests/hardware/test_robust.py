@@ -27,6 +27,7 @@ def test_beats_the_table(paper: fb.Plant, seed: int) -> None:
         assert (verdict.tip_stiffness or 0.0) >= 2.8e4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("robot", "index"), [("ur5e-pedestal", 2), ("ur5e-pedestal", 48), ("ur5e-gantry", 52)])
 def test_redundant_arm_on_a_hardly_damped_base(robot: str, index: int) -> None:
     """Sixteen changed robots of a UR5e on two base joints of 1 to 3 % damping, at poses that a model of them loses."""
@@ -38,6 +39,7 @@ def test_redundant_arm_on_a_hardly_damped_base(robot: str, index: int) -> None:
     assert (verdict.tip_correction or 0.0) > 0.9
 
 
+@pytest.mark.slow
 def test_singular_direction_is_left_to_the_joints() -> None:
     """A UR5e 14 mm/rad from singular: 0.1 rad turns a direction's sign, and only joints alone survive it."""
     pose = random_poses(fb.load("ur5e-pedestal"), 60, 0)[34]

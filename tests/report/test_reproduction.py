@@ -42,6 +42,7 @@ def column(path: Path, name: str) -> np.ndarray:
     return np.array([float(row[name]) for row in rows_of(path)])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PANELS)
 def test_every_panel_is_written_and_shows_something(reproduced, name):
     folder = reproduced[0]
@@ -59,6 +60,7 @@ def test_the_panels_are_those_of_the_paper():
     assert [f"fig{name}" for name in names] == list(PANELS)
 
 
+@pytest.mark.slow
 def test_progress_runs_to_the_end(reproduced):
     calls = reproduced[2]
     total = calls[0][2]
@@ -67,6 +69,7 @@ def test_progress_runs_to_the_end(reproduced):
     assert all(isinstance(call[0], str) and call[0] for call in calls)
 
 
+@pytest.mark.slow
 def test_the_table_is_written_as_it_is_returned(reproduced):
     folder, table, _ = reproduced
     written = rows_of(folder / "table.csv")
@@ -77,6 +80,7 @@ def test_the_table_is_written_as_it_is_returned(reproduced):
     json.dumps(table.to_dict(), allow_nan=False)
 
 
+@pytest.mark.slow
 def test_numbers_behind_figure_7_meet_the_targets(reproduced):
     folder = reproduced[0]
     w, omega = column(folder / "fig07a.csv", "robustness"), column(folder / "fig07c.csv", "frequency_rad_s")
@@ -89,6 +93,7 @@ def test_numbers_behind_figure_7_meet_the_targets(reproduced):
     assert omega[-1] == pytest.approx(346.8, rel=5e-8)  # 0.98^800 of the way, 7e-6 rad/s, is left
 
 
+@pytest.mark.slow
 def test_numbers_behind_figure_9_settle_only_with_the_compensator(reproduced):
     folder = reproduced[0]
     late = {}
@@ -99,6 +104,7 @@ def test_numbers_behind_figure_9_settle_only_with_the_compensator(reproduced):
     assert late["fig09b"] < 1e-4 < 1e-3 < late["fig09a"]
 
 
+@pytest.mark.slow
 def test_numbers_behind_figure_8_name_what_is_meaningless(reproduced):
     rows = rows_of(reproduced[0] / "fig08b.csv")
     void = [row for row in rows if float(row["min_eig_modified_inertia"]) <= 0.0]

@@ -56,6 +56,7 @@ def test_wrong_verdicts_are_found_and_not_explained_away(small):
     assert explain(far)["why"].startswith("unexplained")
 
 
+@pytest.mark.slow
 def test_a_loop_at_the_border_is_explained_by_its_radius(paper_pose):
     """Drives so strong that the radius is 1 + 1e-5; called stable, it is the border's fault, with the figures."""
     soft = draw_case(paper_pose, 0, 0, 0, ("none",))
@@ -130,6 +131,7 @@ def moved(paper):
     return agreement_study(paper, poses=10, trial="move", methods=QUICK, workers=1)
 
 
+@pytest.mark.slow
 def test_moves_are_the_same_controllers_with_noise_and_limits(moved, paper):
     """Counts and limits are drawn, all else is the nudge's. Nine of ten verdicts come true, the rest is explained.
 
@@ -150,6 +152,7 @@ def test_moves_are_the_same_controllers_with_noise_and_limits(moved, paper):
     assert found["complete"]["settled"] == found["complete"]["cases"]
 
 
+@pytest.mark.slow
 def test_what_takes_a_verdict_away_is_named(moved):
     """Drives that can hardly move the arm: a stable loop stays away, and it is the limits that explain it."""
     case = next(one for one in moved.cases if one.stable)

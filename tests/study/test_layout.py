@@ -88,6 +88,7 @@ def test_a_single_target_lands_on_the_robust_curve() -> None:
     assert min(gaps) < 0.005
 
 
+@pytest.mark.slow
 def test_a_redundant_arm_gains_with_every_target_on_its_best_posture() -> None:
     """UR5e, three targets, moves up to 0.1 m: the worst gains, and no posture of `best_posture` there is better by more
     than 1e-6."""

@@ -30,6 +30,7 @@ def whole(paper: fb.Plant, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_local_cluster_writes_the_same_store(whole: Path, tmp_path: Path) -> None:
     """By the command line, in a process of its own, as a user would."""
     path = tmp_path / "map.zarr"
@@ -40,6 +41,7 @@ def test_local_cluster_writes_the_same_store(whole: Path, tmp_path: Path) -> Non
     assert bits(path) == bits(whole)
 
 
+@pytest.mark.slow
 def test_killed_worker_costs_its_block(paper: fb.Plant, whole: Path, tmp_path: Path) -> None:
     """A scheduler of its own; the first worker is killed as soon as a block is done."""
     distributed = pytest.importorskip("distributed")
@@ -65,6 +67,7 @@ def test_results_in_memory(paper: fb.Plant) -> None:
     )
 
 
+@pytest.mark.slow
 def test_no_scheduler_there(paper: fb.Plant) -> None:
     with pytest.raises(fb.InputError, match=r"scheduler: no Dask scheduler answers at tcp://127\.0\.0\.1:9"):
         fb.sweep(paper, shape=(5, 5), scheduler="tcp://127.0.0.1:9")

@@ -82,6 +82,7 @@ def test_interrupted_and_resumed(
     assert len(seen) == 1 + finished(whole) - after  # no block is computed twice
 
 
+@pytest.mark.slow
 def test_killed_at_random_and_resumed(whole: Path, tmp_path: Path) -> None:
     """SIGKILL three times, wherever it hits; then the same command finishes, and once more does nothing."""
     path = tmp_path / "map.zarr"
