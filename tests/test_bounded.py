@@ -117,6 +117,7 @@ def test_three_base_joints_and_three_rows_become_positive_real(base):
     assert complete >= 3
 
 
+@pytest.mark.slow
 def test_six_rows_leave_a_fraction():
     """k = 6 on two- and three-joint bases: the shortage falls below a tenth, in the median below a fiftieth."""
     left = []

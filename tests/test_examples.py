@@ -22,7 +22,7 @@ def marked(path):
     return pytest.param(path, id=path.stem, marks=[pytest.mark.slow] * (path.stem in SLOW))
 
 
-@pytest.mark.parametrize("example", map(marked, EXAMPLES))
+@pytest.mark.parametrize("example", [marked(path) for path in EXAMPLES])
 def test_example(example, tmp_path):
     """It ends well and prints something; files go below the folder it runs in."""
     environment = {**os.environ, "MPLBACKEND": "Agg"}

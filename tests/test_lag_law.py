@@ -239,6 +239,7 @@ def test_designs_for_a_lag_keep_the_damping_two_base_joints(name):
     assert compared >= 1
 
 
+@pytest.mark.slow
 def test_a_refusal_of_convex_names_a_lag_that_would_do():
     """UR5e on its pedestal at 5 ms: with the named lag the same objective has a gain that obeys it."""
     pytest.importorskip("cvxpy")
@@ -264,6 +265,7 @@ def test_mode_by_mode_obeys_the_law_exactly():
         assert shares_taken(pose, E, 5e-3).max() <= SHARE * (1.0 + 1e-6)
 
 
+@pytest.mark.slow
 def test_convex_meets_the_closed_form_of_exact():
     """m = 1, k = n: at a fixed frequency convex has a gain just below exact's bound, and none just above it."""
     pytest.importorskip("cvxpy")
@@ -324,6 +326,7 @@ def test_redundant_arms_spend_the_self_motion_on_the_law():
     assert bound >= 4
 
 
+@pytest.mark.slow
 def test_an_undamped_base_may_not_be_pumped_at_all():
     """Dp = 0: the law asks phi_a^T E phi_a <= 0, whatever the lag; both methods."""
     pytest.importorskip("cvxpy")
@@ -365,6 +368,7 @@ def test_a_redundant_arm_whose_base_leaves_the_tip_at_rest_is_told_so():
         solve(found[0], "exact")
 
 
+@pytest.mark.slow
 def test_frequencies_and_lag_that_exclude_each_other_are_refused_in_words():
     """Raising the slowest mode with a lag of 3 ms: a gain that obeys both by the witness, or what excludes it."""
     pytest.importorskip("cvxpy")

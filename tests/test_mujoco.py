@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -246,19 +247,20 @@ CASES = {name: case for name, *case in run_cases()}
 TIMES = {"switch": 0.05, "end": 0.1, "interval": 1e-3}
 
 
-@pytest.fixture(scope="module")
-def builtin_runs():
-    return {
-        name: flexbase.simulate(goal.plant, start, goal, gain, move=Move(**TIMES, self_motion=0.0))
-        for name, (start, goal, gain) in CASES.items()
-    }
+QUICK = {"paper", "paper, compensated", "3-D 2+4, compensated"}
 
 
-@pytest.mark.parametrize("name", CASES)
-def test_the_same_run_with_mujocos_accelerations(name, builtin_runs):
+@cache
+def builtin_run(name):
+    start, goal, gain = CASES[name]
+    return flexbase.simulate(goal.plant, start, goal, gain, move=Move(**TIMES, self_motion=0.0))
+
+
+@pytest.mark.parametrize("name", [pytest.param(one, marks=[pytest.mark.slow] * (one not in QUICK)) for one in CASES])
+def test_the_same_run_with_mujocos_accelerations(name):
     """Same laws and integrator, on MuJoCo's M and forces: tips within 1e-6 m, torques within 1e-6 of their peak."""
     start, goal, gain = CASES[name]
-    ours = builtin_runs[name]
+    ours = builtin_run(name)
     run = flexbase.simulate(goal.plant, start, goal, gain, move=Move(**TIMES, self_motion=0.0, engine="mujoco"))
     assert ours.stopped is None
     assert np.abs(ours.tip_error).max() > 1e-2
@@ -332,19 +334,19 @@ def stepped(start, goal, E, step):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["paper", "paper, compensated", "sliding, gravity", "3-D 2+4", "3-D 2+4, compensated"])
-def test_the_same_motion_by_mujocos_own_integrator(name, builtin_runs):
+def test_the_same_motion_by_mujocos_own_integrator(name):
     """MuJoCo steps itself, with the law at every stage of its Runge-Kutta steps: tips within 1e-6 m of ours."""
     start, goal, gain = CASES[name]
     errors = stepped(start, goal, None if gain is None else gain.E, 1e-4)
-    assert errors == pytest.approx(builtin_runs[name].tip_error, rel=0.0, abs=SAME_PATH)
+    assert errors == pytest.approx(builtin_run(name).tip_error, rel=0.0, abs=SAME_PATH)
 
 
-def test_a_tenth_of_a_percent_of_stiffness_would_be_seen(builtin_runs):
+def test_a_tenth_of_a_percent_of_stiffness_would_be_seen():
     """The control: base springs 0.1 % stiffer in MuJoCo, and the tip leaves ours by more than the tolerance."""
     goal = CASES["paper"][1]
     stiffer = replace(goal.arm, base=replace(goal.arm.base, stiffness=1.001 * goal.arm.base.stiffness))
     run = flexbase.simulate(Plant(stiffer), START, GOAL, move=Move(**TIMES, engine="mujoco"))
-    assert np.abs(run.tip_error - builtin_runs["paper"].tip_error).max() > SAME_PATH
+    assert np.abs(run.tip_error - builtin_run("paper").tip_error).max() > SAME_PATH
 
 
 def test_a_run_that_must_stop_stops_as_ours_does(paper):

@@ -45,7 +45,11 @@ def bent(count, seed=3):
     return np.array(found)
 
 
-@pytest.mark.parametrize(("make", "tolerance"), [(typed, 1e-8), (bundled, 1e-6)], ids=["data sheet", "URDF"])
+@pytest.mark.parametrize(
+    ("make", "tolerance"),
+    [(typed, 1e-8), pytest.param(bundled, 1e-6, marks=pytest.mark.slow)],
+    ids=["data sheet", "URDF"],
+)
 def test_all_textbook_solutions_are_found_and_named_once(make, tolerance):
     """100 random poses: the solutions are those of Hawkins' closed form, each with its own name, and no others.
 
@@ -78,7 +82,7 @@ def test_factors_make_up_the_determinant(arm):
     assert abs(ratio[0]) > 1e-3
 
 
-@pytest.mark.parametrize("size", [0.0, 1e-3], ids=["exact", "calibrated"])
+@pytest.mark.parametrize("size", [0.0, pytest.param(1e-3, marks=pytest.mark.slow)], ids=["exact", "calibrated"])
 @pytest.mark.parametrize("arm", ARMS)
 def test_nothing_that_newton_finds_is_missing(arm, size):
     """Newton from 400 random starts finds no solution that is not listed, and the listed names differ.

@@ -32,6 +32,7 @@ def test_document_is_the_librarys(call: Call, paper_pose: fb.Pose) -> None:
     assert found["sensing"]["rate"] == 4000.0
 
 
+@pytest.mark.slow
 def test_safe_gain_and_region(call: Call, tmp_path: Path) -> None:
     out = tmp_path / "region.json"
     words = ("--method", "none", "--stiffness", "2e4,2e4", "--damping", "600,600")

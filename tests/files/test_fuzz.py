@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import pytest
+
 from files.fuzz import fuzz
 
 
+@pytest.mark.slow
 def test_hostile_files_end_in_a_robot_or_in_a_message():
     """No traceback, crash, hang or nonsense; and enough of both outcomes that the run means something."""
     counts, failures = fuzz(inputs=3000, workers=2, seed=7)

@@ -71,7 +71,10 @@ def test_no_sampled_posture_is_better(m: int, measure: str, target: list[float])
     assert found.best.pose.tip == pytest.approx(target, abs=1e-10)
 
 
-@pytest.mark.parametrize(("robot", "tip"), [("ur5e-pedestal", [0.4, 0.2, 1.0]), ("iiwa-platform", [0.5, 0.2, 1.0])])
+@pytest.mark.parametrize(
+    ("robot", "tip"),
+    [("ur5e-pedestal", [0.4, 0.2, 1.0]), pytest.param("iiwa-platform", [0.5, 0.2, 1.0], marks=pytest.mark.slow)],
+)
 @pytest.mark.filterwarnings("ignore:posture")
 def test_no_random_posture_is_better(robot: str, tip: list[float]) -> None:
     """2000 random starts brought to the target; the value is that of the modal analysis, to 1e-9 of it."""
