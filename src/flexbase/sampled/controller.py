@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -14,12 +14,15 @@ from flexbase.model.loop import Gain
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
+from flexbase.sheets.numbers import listed, matrix, number
+from flexbase.sheets.sheet import Sheet, facts, make_sheet
+from flexbase.sheets.told import Told
 
 SELF_MOTION = 20.0  # rad/s of a redundant arm's self-motion: below the base, so that it hardly drives it
 
 
 @dataclass(frozen=True, eq=False)
-class SampledController:
+class SampledController(Told):
     """tau[k] from the measurements up to k, all of them deviations from the pose it was made for.
 
     system : inputs are tip error (k), joints (n) and accelerations (n); outputs are n torques
@@ -36,8 +39,30 @@ class SampledController:
     notes: dict[str, Any] = field(default_factory=dict)
     judged: object = field(default=None, repr=False)
 
+    document: ClassVar = (
+        *("name", "robot=pose.plant.name", "q=pose.q", "equilibrium=pose.equilibrium", "sensing", "step=system.step"),
+        *("A=system.A", "B=system.B", "C=system.C", "D=system.D", "E", "notes"),
+    )
+
     def __getstate__(self) -> dict[str, Any]:
         return {**vars(self), "judged": None}
+
+    def sheet(self) -> Sheet:
+        """Where it was made, for which loop, its size, and what its maker reports."""
+        gain = None if self.E is None else ("E [kg m^2 or kg]", matrix(self.E))
+        notes = [(name.replace("_", " "), _said(value)) for name, value in self.notes.items()]
+        return make_sheet(
+            self.pose.plant.name,
+            f"controller, method {self.name}, at joints {listed(self.pose.q)}",
+            facts(("loop", self.sensing.summary()), ("states", str(self.system.order)), gain, *notes),
+        )
+
+
+def _said(value: Any) -> str:
+    """What a maker reports."""
+    if isinstance(value, bool | str):
+        return str(value).lower()
+    return listed(value) if np.ndim(value) else number(value, 7)
 
 
 def task_pd(pose: Pose, sensing: Sensing, gains: Gains) -> Discrete:

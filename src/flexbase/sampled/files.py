@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -24,23 +23,15 @@ MEND = "Give a file that `save_controller` wrote."
 
 def save_controller(controller: SampledController, path: str | Path) -> None:
     """Write a controller as JSON: its state space with all digits, pose, sensing and notes. Raises InputError."""
-    system, pose = controller.system, controller.pose
+    system = controller.system
     document = {
         "format": FORMAT,
-        "name": controller.name,
-        "robot": pose.plant.name,
-        "model": model_digest(pose.arm),
-        "q": pose.q.tolist(),
-        "equilibrium": pose.equilibrium.tolist(),
-        "sensing": asdict(controller.sensing),
-        "step": system.step,
-        **{part: getattr(system, part).tolist() for part in "ABCD"},
+        "model": model_digest(controller.pose.arm),
+        **controller.to_dict(),
         "shapes": {part: list(getattr(system, part).shape) for part in "ABCD"},
-        "E": None if controller.E is None else controller.E.tolist(),
-        "notes": controller.notes,
     }
     try:
-        Path(path).write_text(json.dumps(document, indent=1, default=_plain) + "\n", encoding="utf-8")
+        Path(path).write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
     except OSError as fault:
         raise InputError(f"{path}: cannot be written ({fault.strerror}). Give a file in an existing folder.") from fault
 
@@ -110,10 +101,3 @@ def _matrix(path: str | Path, name: str, document: dict[str, Any]) -> Array:
 
 def _tuples(table: dict[str, Any]) -> dict[str, Any]:
     return {name: tuple(value) if isinstance(value, list) else value for name, value in table.items()}
-
-
-def _plain(value: object) -> object:
-    """NumPy's numbers and arrays as plain ones."""
-    if isinstance(value, np.generic | np.ndarray):
-        return value.tolist()
-    raise TypeError(f"{type(value).__name__} is no number")

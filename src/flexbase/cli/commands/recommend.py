@@ -13,7 +13,7 @@ from flexbase.cli.options.sensing import SensingOptions
 from flexbase.cli.terminal.document import document
 from flexbase.cli.terminal.out import OutFile, check_out, write_out, written
 from flexbase.cli.terminal.progress import progress_bar
-from flexbase.cli.terminal.show import put, title
+from flexbase.cli.terminal.screen import put
 from flexbase.model.loop import Loop
 from flexbase.plant import load
 from flexbase.study.running.recommend import recommend
@@ -48,7 +48,5 @@ def recommend_controller(
         found = recommend(pose.pose(plant), loop=Loop(None, loop.gains(plant), sensing), workers=None, progress=report)
     content = found.to_dict()
     write_out(out, "recommend", found, content)
-    put(document("recommend", content)) if json else put(
-        title(plant.name, "recommended"), "", *(f"  {line}" for line in found.lines()), *written(out)
-    )
+    put(document("recommend", content)) if json else put(found.sheet(), *written(out))
     return 0 if found.best else 1

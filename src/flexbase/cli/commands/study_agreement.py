@@ -9,11 +9,10 @@ from cyclopts import App, Parameter
 from flexbase.cli.options.common import Json, option
 from flexbase.cli.options.pose import Robot
 from flexbase.cli.options.words import Names, names
-from flexbase.cli.terminal.agreement_table import good, tables
 from flexbase.cli.terminal.document import document
 from flexbase.cli.terminal.out import OutFile, check_out, write_out, written
 from flexbase.cli.terminal.progress import progress_bar
-from flexbase.cli.terminal.show import put
+from flexbase.cli.terminal.screen import put
 from flexbase.plant import load
 from flexbase.study.agreement.study import TRIALS, agreement_study
 
@@ -56,5 +55,5 @@ def study_agreement(
         )
     content = found.to_dict()
     write_out(out, "study agreement", found, content)
-    put(document("study agreement", content)) if json else put(*tables(found), *written(out))
-    return 0 if good(found) else 1
+    put(document("study agreement", content)) if json else put(found.sheet(), *written(out))
+    return 0 if found.good else 1

@@ -10,10 +10,9 @@ from flexbase.cli.options.common import Json, option
 from flexbase.cli.options.pose import Robot
 from flexbase.cli.options.words import Names, names
 from flexbase.cli.terminal.document import document
-from flexbase.cli.terminal.hardware_table import tables
 from flexbase.cli.terminal.out import OutFile, check_out, write_out, written
 from flexbase.cli.terminal.progress import progress_bar
-from flexbase.cli.terminal.show import put
+from flexbase.cli.terminal.screen import put
 from flexbase.plant import load
 from flexbase.study.running.hardware_study import hardware_study
 from flexbase.synthesis import HARDWARE_METHODS
@@ -56,4 +55,4 @@ def study_hardware(
         )
     content = found.to_dict()
     write_out(out, "study hardware", found, content)
-    put(document("study hardware", content)) if json else put(*tables(found), *written(out))
+    put(document("study hardware", content)) if json else put(found.sheet(), *written(out))

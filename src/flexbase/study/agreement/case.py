@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import ClassVar
 
 import numpy as np
 
 from flexbase.cautions import collected
+from flexbase.checks import Array
 from flexbase.errors import FlexbaseError
 from flexbase.model.loop import loop_on
 from flexbase.model.sensing import Sensing
@@ -15,16 +16,21 @@ from flexbase.plant import Pose
 from flexbase.sampled.changes import Changed, changed_pose, eight_changes
 from flexbase.sampled.controller import SampledController
 from flexbase.sampled.judged import judged
+from flexbase.sheets.plain import Plain
 from flexbase.synthesis import HARDWARE_METHODS
 
 RATES = (1e3, 2e3, 4e3)
 SCALES = (1.0 / 16.0, 0.25, 1.0, 4.0)  # of the project's task gains: (s Kp, sqrt(s) Kv)
 ACCELERATIONS = ("accelerometer", "accelerometer", "encoders", "kalman")
+DRAWN = (
+    *("task_every", "compute_delay", "task_delay", "acceleration", "encoder_counts", "task_noise"),
+    *("acceleration_noise", "torque_limit"),
+)  # of the sensing
 DRIVE = (0.5, 4.0)  # torque given over torque asked, in half of the cases
 
 
 @dataclass(frozen=True, eq=False)
-class Case:
+class Case(Plain):
     """A controller on a robot that may differ from its model, and the verdict of the linear loop.
 
     pose : where and on which robot it runs; change : how that differs, in words
@@ -42,6 +48,18 @@ class Case:
     radius: float
     complete: bool
 
+    document: ClassVar = (
+        *("number", "method", "gain_scale=scale", "rate_hz=controller.sensing.rate"),
+        *(f"{name}=controller.sensing.{name}" for name in DRAWN),
+        *("change", "drive", "joints", "spectral_radius=radius", "predicted_stable=stable", "complete"),
+        "predicted_growth_per_s=rate",
+    )
+
+    @property
+    def joints(self) -> Array:
+        """Of the arm."""
+        return self.pose.q[self.pose.arm.m :]
+
     @property
     def stable(self) -> bool:
         """The linear verdict."""
@@ -52,34 +70,9 @@ class Case:
         """Growth of the slowest motion that the linear loop promises [1/s]; negative where it dies out."""
         return float(np.log(max(self.radius, 1e-300))) * self.controller.sensing.rate
 
-    def to_dict(self) -> dict[str, Any]:
-        """What was drawn, and the verdict."""
-        sensing = self.controller.sensing
-        return {
-            "number": self.number,
-            "method": self.method,
-            "gain_scale": self.scale,
-            "rate_hz": sensing.rate,
-            "task_every": sensing.task_every,
-            "compute_delay": sensing.compute_delay,
-            "task_delay": sensing.task_delay,
-            "acceleration": sensing.acceleration,
-            "encoder_counts": sensing.encoder_counts,
-            "task_noise": sensing.task_noise,
-            "acceleration_noise": sensing.acceleration_noise,
-            "torque_limit": sensing.torque_limit,
-            "change": self.change,
-            "drive": self.drive,
-            "joints": self.pose.q[self.pose.arm.m :].tolist(),
-            "spectral_radius": self.radius,
-            "predicted_stable": self.stable,
-            "complete": self.complete,
-            "predicted_growth_per_s": self.rate,
-        }
-
 
 @dataclass(frozen=True)
-class Outcome:
+class Outcome(Plain):
     """What happened: settled or not, how it was seen, after how long [s].
 
     growth : as measured at the end [1/s]; NaN where it was not
@@ -89,6 +82,8 @@ class Outcome:
     seen: str
     seconds: float
     growth: float
+
+    document: ClassVar = ("settled", "seen", "seconds", "measured_growth_per_s=growth")
 
 
 def draw_case(pose: Pose, number: int, attempt: int, seed: int, methods: tuple[str, ...]) -> Case | None:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -16,6 +16,8 @@ from flexbase.checks import choose
 from flexbase.errors import InputError, import_extra
 from flexbase.model.loop import loop_on
 from flexbase.plant import Plant, Pose, check_plant
+from flexbase.sheets.sheet import Column, Sheet, answer, facts, make_sheet, table, words
+from flexbase.sheets.told import Told
 from flexbase.study.agreement import move as agreement_move
 from flexbase.study.agreement import nudge as agreement_nudge
 from flexbase.study.agreement.case import Case, Outcome, draw_case
@@ -26,6 +28,7 @@ from flexbase.synthesis import HARDWARE_METHODS
 from flexbase.trace.kernel import cores
 
 FULL = 0.55  # of the poses: a class with so many takes no more, and its poses draw again
+ENOUGH, ERROR = 0.98, 0.02  # of the verdicts that come true, and of either error: good
 ATTEMPTS = 40  # draws a pose
 Progress = Callable[[str, int, int], None]
 Mapper = Callable[[Callable[[Any], Any], Sequence[Any]], Iterator[Any]]
@@ -53,7 +56,7 @@ TRIALS = {
 
 
 @dataclass(frozen=True, eq=False)
-class Agreement:
+class Agreement(Told):
     """Verdicts and outcomes, case by case.
 
     trial : of TRIALS; redrawn : draws whose class was full; undesigned : draws whose method had no design
@@ -68,6 +71,13 @@ class Agreement:
     redrawn: int
     undesigned: int
     explained: dict[int, dict[str, Any]] = field(default_factory=dict)
+
+    engine: ClassVar[str] = "mujoco"
+    document: ClassVar = (
+        *("robot", "trial", "seed", "engine", "poses=cases.__len__", "agreement", "false_stable_rate"),
+        *("false_unstable_rate", "confusion", "share_stable", "complete", "disagreements", "constant_predictor"),
+        *("method_predictor", "borderline", "growth_error", "mix", "seen_by", "redrawn", "undesigned", "cases=told"),
+    )
 
     def confusion(self) -> dict[str, int]:
         """Counts of the four combinations."""
@@ -128,20 +138,25 @@ class Agreement:
             "false_unstable_rate": 0.0 if says else 1.0,
         }
 
-    def method_predictor(self) -> float:
+    def method_predictor(self) -> dict[str, float]:
         """What always giving a method's commoner answer would score: how much of the mix its name gives away."""
         told: dict[str, list[bool]] = {}
         for case, found in zip(self.cases, self.outcomes, strict=True):
             told.setdefault(case.method, []).append(found.settled)
-        return sum(max(sum(one), len(one) - sum(one)) for one in told.values()) / len(self.cases)
+        return {"agreement": sum(max(sum(one), len(one) - sum(one)) for one in told.values()) / len(self.cases)}
+
+    def told(self) -> list[dict[str, Any]]:
+        """What was drawn, the verdict and the outcome of each case."""
+        return [{**case.to_dict(), **found.to_dict()} for case, found in zip(self.cases, self.outcomes, strict=True)]
 
     def disagreements(self) -> list[dict[str, Any]]:
         """The cases that disagree, with what explains them."""
-        return [
-            {**case.to_dict(), **_words(found), "explanation": self.explained.get(case.number)}
-            for case, found in zip(self.cases, self.outcomes, strict=True)
-            if case.stable != found.settled
-        ]
+        wrong = [one for one in self.told() if one["predicted_stable"] != one["settled"]]
+        return [{**one, "explanation": self.explained.get(one["number"])} for one in wrong]
+
+    def seen_by(self) -> dict[str, int]:
+        """How many outcomes were seen in each way."""
+        return dict(Counter(found.seen for found in self.outcomes))
 
     def mix(self) -> dict[str, dict[str, int]]:
         """How many cases of each method were called stable and unstable."""
@@ -151,42 +166,34 @@ class Agreement:
             row["stable" if case.stable else "unstable"] += 1
         return dict(sorted(table.items()))
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers."""
-        return {
-            "robot": self.robot,
-            "trial": self.trial,
-            "seed": self.seed,
-            "engine": "mujoco",
-            "poses": len(self.cases),
-            "agreement": self.agreement,
-            "false_stable_rate": self.false_stable_rate,
-            "false_unstable_rate": self.false_unstable_rate,
-            "confusion": self.confusion(),
-            "share_stable": self.share_stable,
-            "complete": self.complete(),
-            "disagreements": self.disagreements(),
-            "constant_predictor": self.constant_predictor(),
-            "method_predictor": {"agreement": self.method_predictor()},
-            "borderline": self.borderline(),
-            "growth_error": self.growth_error,
-            "mix": self.mix(),
-            "seen_by": dict(Counter(found.seen for found in self.outcomes)),
-            "redrawn": self.redrawn,
-            "undesigned": self.undesigned,
-            "cases": [
-                {**case.to_dict(), **_words(found)} for case, found in zip(self.cases, self.outcomes, strict=True)
-            ],
-        }
+    @property
+    def good(self) -> bool:
+        """Whether enough of the verdicts come true, and neither error is large."""
+        return self.agreement >= ENOUGH and max(self.false_stable_rate, self.false_unstable_rate) <= ERROR
 
-    def summary(self) -> str:
-        """A few lines in plain text."""
-        control = self.constant_predictor()
-        return (
-            f"{self.robot}: {len(self.cases)} poses, {100 * self.agreement:.1f} % of the linear verdicts come true\n"
-            f"  called stable and does not settle {100 * self.false_stable_rate:.1f} %, "
-            f"called unstable and settles {100 * self.false_unstable_rate:.1f} %\n"
-            f"  always saying {control['says']}: {100 * control['agreement']:.1f} %"
+    def sheet(self) -> Sheet:
+        """The counts, the errors, and each case that disagrees with what explains it."""
+        counts, control, near, whole = self.confusion(), self.constant_predictor(), self.borderline(), self.complete()
+        rows = [
+            [f"called {a}", *(str(counts[f"predicted_{a}_{b}"]) for b in ("settled", "not_settled"))] for a in CLASSES
+        ]
+        growth = f"{100.0 * self.growth_error:.2g} % apart (median)"
+        said = facts(
+            ("unstable, called stable", f"{100.0 * self.false_stable_rate:.1f} %"),
+            ("stable, called unstable", f"{100.0 * self.false_unstable_rate:.1f} %"),
+            ("stable with margins, also changed", f"{whole['settled']} of {whole['cases']} settle"),
+            (f"within {NEAR:g} of the border", f"{near['agreeing']} of {near['cases']} come true"),
+            ("growth, measured to promised", growth) if self.trial == "nudge" else None,
+            (f"always saying {control['says']}", f"{100.0 * control['agreement']:.1f} %"),
+            *(("disagrees", f"case {one['number']}: {one['explanation']['why']}") for one in self.disagreements()),
+        )
+        share = f"{100.0 * self.agreement:.1f} % come true"
+        return make_sheet(
+            self.robot,
+            f"linear verdicts against a {self.trial} in MuJoCo, {len(self.cases)} poses",
+            table([words(""), Column("settled"), Column("not settled")], rows),
+            said,
+            answer(self.good, share, share),
         )
 
 
@@ -288,12 +295,3 @@ def _draw(task: tuple[Pose, int, int, int, tuple[str, ...]]) -> Case | None:
 
 def _share(part: int, rest: int) -> float:
     return part / (part + rest) if part else 0.0
-
-
-def _words(found: Outcome) -> dict[str, Any]:
-    return {
-        "settled": found.settled,
-        "seen": found.seen,
-        "seconds": found.seconds,
-        "measured_growth_per_s": found.growth,
-    }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -13,13 +13,23 @@ from flexbase.checks import choose
 from flexbase.errors import FlexbaseError
 from flexbase.model.loop import Asked, LoopSpec, loop_on
 from flexbase.plant import Plant, Pose, check_plant
+from flexbase.sampled.columns import below, cells, columns, legend
 from flexbase.sampled.figures import FIGURES
 from flexbase.sampled.judged import GOOD_MARGIN, judged
+from flexbase.sheets.plain import Plain
+from flexbase.sheets.sheet import Column, Note, Sheet, make_sheet, table, words
+from flexbase.sheets.told import Told
 from flexbase.study.montecarlo.interval import probability_interval
 from flexbase.study.workspace import random_poses
 from flexbase.sweeps.engine.pool import in_processes
 from flexbase.synthesis import HARDWARE_METHODS
 
+SHARES = {
+    "stable": "stable_share",
+    "margin": "margin_share",
+    "changed": "perturbed_share",
+    "all": "complete_share",
+}
 TOLD = tuple(name for name, one in FIGURES.items() if one.of_the_tip)
 
 
@@ -50,7 +60,7 @@ NO_DESIGN = Outcome(False, False, False, False, {})
 
 
 @dataclass(frozen=True)
-class Row:
+class Row(Plain):
     """Shares of the poses at which a method is stable, has disk margins of 0.3, and survives all changes, in [0, 1].
 
     margin_share : stable with both margins; perturbed_share : stable for the nominal and every changed robot
@@ -75,36 +85,46 @@ class Row:
     perturbed_interval: tuple[float, float]
     complete_interval: tuple[float, float]
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers, the medians under the figures' names."""
-        said = {name: value for name, value in vars(self).items() if name != "medians"}
-        return {**said, **self.medians}
+    document: ClassVar = (
+        *("method", "rate_hz", "gain_scale", "poses"),
+        *("stable_share", "margin_share", "perturbed_share", "complete_share", "no_design_share"),
+        *("stable_interval", "margin_interval", "perturbed_interval", "complete_interval", "*medians"),
+    )
 
 
 @dataclass(frozen=True)
-class HardwareStudy:
+class HardwareStudy(Told):
     """The table of a study."""
 
     robot: str
     seed: int
     rows: tuple[Row, ...]
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers."""
-        return {"robot": self.robot, "seed": self.seed, "rows": [row.to_dict() for row in self.rows]}
-
-    def summary(self) -> str:
-        """A line a row: stable / margin / perturbed / all three in percent."""
-        lines = [
-            f"{self.robot}: stable / disk margin {GOOD_MARGIN} / survives all changes / all three [%], stiffness [N/m]"
+    def sheet(self) -> Sheet:
+        """A row a method and setting, what the columns mean, and how far the shares may be trusted."""
+        heads = [words("method"), words("rate\ngains"), *(Column(head, "%") for head in SHARES)]
+        rows = [
+            (
+                row.method,
+                f"{row.rate_hz / 1e3:g}k x{row.gain_scale:g}",
+                *(f"{100.0 * getattr(row, share):.0f}" for share in SHARES.values()),
+                *cells(row.medians, TOLD),
+            )
+            for row in self.rows
         ]
-        for row in self.rows:
-            shares = (row.stable_share, row.margin_share, row.perturbed_share, row.complete_share)
-            shown = " / ".join(f"{100.0 * share:3.0f}" for share in shares)
-            stiffness = row.medians["tip_stiffness"]
-            stiff = "none" if stiffness is None else f"{stiffness:.2e}"
-            lines.append(f"  {row.method:12s} {row.rate_hz:6.0f} Hz x{row.gain_scale:<5g} {shown}  {stiff}")
-        return "\n".join(lines)
+        ends = [pair for row in self.rows for pair in (row.stable_interval, row.complete_interval)]
+        wide = f"{50.0 * max(high - low for low, high in ends):.0f} %"
+        medians = {f"{row.method} {row.rate_hz / 1e3:g}k x{row.gain_scale:g}": row.medians for row in self.rows}
+        return make_sheet(
+            self.robot,
+            "which controllers run",
+            table([*heads, *columns(TOLD)], rows),
+            below(medians, TOLD),
+            Note(
+                f"Shares of {self.rows[0].poses} poses; half-width of the 95 % intervals up to {wide}. margin: disk "
+                f"margins of {GOOD_MARGIN:g}; changed: on all changed robots; medians where stable, {legend(TOLD)}."
+            ),
+        )
 
 
 def hardware_study(

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, replace
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from flexbase.sampled.controller import SampledController
 from flexbase.sampled.judged import GOOD_MARGIN, SAFE, STABLE, UNSTABLE, Judged, robots_at
 from flexbase.sampled.noise import torque_noise
 from flexbase.sampled.verdict import HardwareVerdict, hardware_verdict
+from flexbase.sheets.plain import Plain
+from flexbase.sheets.sheet import Sheet, facts, make_sheet
+from flexbase.sheets.told import Told
 from flexbase.sweeps.engine.pool import in_processes
 from flexbase.synthesis import HARDWARE_METHODS, controller_for
 
@@ -30,7 +33,7 @@ ERRORS = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5)  # of the base stiffness: how wrong the
 
 
 @dataclass(frozen=True)
-class Candidate:
+class Candidate(Plain):
     """A method at the pose: its verdict and what it costs.
 
     refusal : why there is no controller; the rest is None then
@@ -47,10 +50,9 @@ class Candidate:
     stiffness_error: float | None = None
     sensors: tuple[str, ...] = ()
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers."""
-        verdict = None if self.verdict is None else self.verdict.to_dict()
-        return {**vars(self), "verdict": verdict, "sensors": list(self.sensors), "grade": self.grade}
+    document: ClassVar = (
+        *("method", "purpose", "verdict", "refusal", "torque_noise", "stiffness_error", "sensors", "grade"),
+    )
 
     @property
     def grade(self) -> int:
@@ -59,7 +61,7 @@ class Candidate:
 
 
 @dataclass(frozen=True)
-class Recommendation:
+class Recommendation(Told):
     """The answer at one pose.
 
     best : the recommended candidate, or None where nothing is stable
@@ -75,20 +77,20 @@ class Recommendation:
     candidates: tuple[Candidate, ...]
     changes: dict[str, str | None]
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers."""
-        return {
-            "robot": self.robot,
-            "tip": list(self.tip),
-            "sensing": asdict(self.sensing),
-            "sensing_declared": self.declared,
-            "positive_real": self.positive_real,
-            "recommended": None if self.best is None else self.best.method,
-            "grade": 0 if self.best is None else self.best.grade,
-            "candidates": [one.to_dict() for one in self.candidates],
-            "changes": self.changes,
-            "lines": self.lines(),
-        }
+    document: ClassVar = (
+        *("robot", "tip", "sensing", "sensing_declared=declared", "positive_real", "recommended=best.method", "grade"),
+        *("candidates", "changes", "lines"),
+    )
+
+    @property
+    def grade(self) -> int:
+        """Of the recommended candidate."""
+        return UNSTABLE if self.best is None else self.best.grade
+
+    def sheet(self) -> Sheet:
+        """The six lines."""
+        said = [line.partition(": ") for line in self.lines()]
+        return make_sheet(self.robot, "recommended", facts(*((name, text) for name, _, text in said)))
 
     def lines(self) -> list[str]:
         """Six lines that a person can act on."""
@@ -124,10 +126,6 @@ class Recommendation:
         here = None if self.best is None else self.best.method
         turns = [f"{where}: {name or 'nothing stable'}" for where, name in self.changes.items() if name != here]
         return ("with " + "; ".join(turns) + ".") if turns else "the same answer at every rate and sensor tried."
-
-    def summary(self) -> str:
-        """The six lines."""
-        return "\n".join(self.lines())
 
 
 def recommend(
