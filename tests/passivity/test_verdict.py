@@ -318,7 +318,7 @@ def test_the_map_has_the_same_number(paper, paper_pose):
 
 def test_result_in_words_and_numbers(paper_pose):
     found = fb.verdict(paper_pose)
-    assert "not positive real" in found.summary()
+    assert "Not positive real" in found.summary()
     assert "at all frequencies" in found.summary()
     plain = json.loads(json.dumps(found.to_dict()))
     assert plain["shortage"] == found.shortage

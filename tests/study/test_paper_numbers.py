@@ -150,13 +150,13 @@ def test_a_configuration_without_a_design_says_why(case, tip, status):
     assert cell.recursion_status in (ellipses.LOST, ellipses.UNFINISHED)
 
 
-def _field(turns: list[float], robustness: list[float], cell: paper.EllipseCell) -> paper.EllipseField:
+def _field(turns: list[float], robustness: list[float], cell: paper.EllipseCell, pose: fb.Pose) -> paper.EllipseField:
     """Cells whose longest axes turn by given angles."""
     cells = []
     for turn, w in zip(turns, robustness, strict=True):
         c, s = np.cos(turn), np.sin(turn)
         turned = Ellipsoid("force", np.array([2.0, 1.0]), np.array([[c, -s], [s, c]]))
-        pair = Manipulability(Ellipsoid("force", np.array([2.0, 1.0]), np.eye(2)), turned)
+        pair = Manipulability(pose, Ellipsoid("force", np.array([2.0, 1.0]), np.eye(2)), turned)
         cells.append(replace(cell, robustness=w, recursion=pair))
     return paper.EllipseField(tuple(cells))
 
@@ -164,8 +164,8 @@ def _field(turns: list[float], robustness: list[float], cell: paper.EllipseCell)
 def test_the_rank_correlation_has_the_sign_of_the_papers_claim(case):
     cell = paper.ellipse_cell(case.plant, (0.33, 0.25))
     turns, w = [0.0, -0.1, 0.2, -0.3], [0.0, -0.01, -0.02, -0.03]
-    assert _field(turns, w, cell).rank_correlation()[0] == pytest.approx(1.0)
-    assert _field(turns, w[::-1], cell).rank_correlation()[0] == pytest.approx(-1.0)
+    assert _field(turns, w, cell, case.pose).rank_correlation()[0] == pytest.approx(1.0)
+    assert _field(turns, w[::-1], cell, case.pose).rank_correlation()[0] == pytest.approx(-1.0)
 
 
 def test_ellipse_tips_hold_the_design_point_and_only_what_is_reached(case):

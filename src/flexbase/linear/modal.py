@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import ClassVar
 
 import numpy as np
 
@@ -20,6 +20,10 @@ from flexbase.linear.quadratic_eigenproblem import Pole, RealShapes, damped_pole
 from flexbase.linear.reduced import RealMode, alignment, robustness
 from flexbase.model.loop import Asked, Gain, loop_on
 from flexbase.plant import Pose, check_pose
+from flexbase.sheets.numbers import matrix, number
+from flexbase.sheets.plain import Plain
+from flexbase.sheets.sheet import Column, Sheet, answer, facts, make_sheet, table, words
+from flexbase.sheets.told import Told
 
 POSITIVE_REAL = 1e-8  # relative passivity shortage (1 - cos)/2 up to which a residue counts as positive  [theory §5]
 VANISHING = 1e-12  # a mode that the tip sees or drives less than this, relative, is out of its reach
@@ -33,7 +37,7 @@ RIGID = "Rigid base: no vibration mode."
 
 
 @dataclass(frozen=True, eq=False)
-class Mode:
+class Mode(Plain):
     """One vibration mode: (R' s + R) / (s^2 + 2 zeta omega s + omega^2) in P(s).  [U03 eq 5-7, theory §3]
 
     frequency : omega = |l| [rad/s]
@@ -57,26 +61,40 @@ class Mode:
     participation: Array
     label: str
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers, with units in the names."""
-        return {
-            "frequency_rad_s": self.frequency,
-            "damping_ratio": self.damping_ratio,
-            "residue": self.residue.tolist(),
-            "residue_s": self.residue_s.tolist(),
-            "robustness": self.robustness,
-            "alignment": self.alignment,
-            "label": self.label,
-            "participation": self.participation.tolist(),
-        }
+    document: ClassVar = (
+        "frequency_rad_s=frequency",
+        "damping_ratio",
+        "residue",
+        "residue_s",
+        "robustness",
+        "alignment",
+        "label",
+        "participation",
+    )
+
+    def row(self) -> tuple[str, ...]:
+        """The mode in a line: what takes part, frequency in both units, damping ratio, robustness, alignment."""
+        hertz, damping = number(self.frequency / (2.0 * np.pi), 6), number(self.damping_ratio, 6)
+        return self.label, number(self.frequency), hertz, damping, number(self.robustness), number(self.alignment)
+
+
+COLUMNS = (
+    words("mode"),
+    Column("frequency", "rad/s"),
+    Column("", "Hz"),
+    Column("damping\nratio"),
+    Column("robustness w", "m/(N s^2)"),
+    Column("alignment", "1"),
+)
 
 
 @dataclass(frozen=True, eq=False)
-class Modes:
+class Modes(Told):
     """All vibration modes of a pose, slowest first, and the rigid mode.
 
     rigid_mode : R_0, shape (k, k)  [U03 eq 6]
     positive_real : the simple verdict by residues; `caveat` says how far it may be trusted
+    compensated : whether a compensator is at work
     """
 
     pose: Pose
@@ -84,6 +102,16 @@ class Modes:
     rigid_mode: Array
     positive_real: bool
     caveat: str
+    compensated: bool
+
+    document: ClassVar = (
+        "q=pose.q",
+        "tip=pose.tip",
+        "modes",
+        "rigid_mode",
+        "positive_real",
+        "positive_real_caveat=caveat",
+    )
 
     def __len__(self) -> int:
         return len(self.modes)
@@ -91,28 +119,25 @@ class Modes:
     def __getitem__(self, index: int) -> Mode:
         return self.modes[index]
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers, with units in the names."""
-        return {
-            "q": self.pose.q.tolist(),
-            "tip": self.pose.tip.tolist(),
-            "modes": [mode.to_dict() for mode in self.modes],
-            "rigid_mode": self.rigid_mode.tolist(),
-            "positive_real": self.positive_real,
-            "positive_real_caveat": self.caveat,
-        }
-
-    def summary(self) -> str:
-        """A table in plain text."""
-        lines = [f"{self.pose.plant.name} at tip {np.round(self.pose.tip, 6).tolist()}"]
-        lines += [
-            f"  {mode.label}: {mode.frequency:.4f} rad/s ({mode.frequency / (2.0 * np.pi):.3f} Hz), "
-            f"zeta {mode.damping_ratio:.4g}, w {mode.robustness:.4g}, "
-            f"alignment {'undefined' if mode.alignment is None else f'{mode.alignment:.6f}'}"
-            for mode in self.modes
+    def sheet(self) -> Sheet:
+        """A row a mode, the residues, and the verdict."""
+        damped = any(mode.residue_s.any() for mode in self.modes)
+        residues = [
+            row
+            for i, mode in enumerate(self.modes, start=1)
+            for row in (
+                (f"R_{i} [m/(N s^2)]", matrix(mode.residue)),
+                (f"R'_{i} [m/(N s)]", matrix(mode.residue_s)) if damped else None,
+            )
         ]
-        verdict = "positive real" if self.positive_real else "not positive real"
-        return "\n".join([*lines, f"  {verdict}. {self.caveat}"])
+        return make_sheet(
+            self.pose.plant.name,
+            f"vibration modes {'with' if self.compensated else 'without'} compensator",
+            self.pose.where,
+            table(COLUMNS, (mode.row() for mode in self.modes)),
+            facts(*residues, ("R_0 [m/(N s^2)]", matrix(self.rigid_mode))),
+            answer(self.positive_real, "Positive real", "Not positive real", self.caveat),
+        )
 
 
 def modes(pose: Pose, loop: Asked = None) -> Modes:
@@ -124,7 +149,8 @@ def modes(pose: Pose, loop: Asked = None) -> Modes:
     Warns where a mode is overdamped. Raises InputError if M - E is not positive definite.
     """
     check_pose(pose)
-    E = loop_on(pose.arm, loop).gain
+    asked = loop_on(pose.arm, loop)
+    E = asked.gain
     check_definite_inertia(pose, E)
     analyse = _reduced if is_reducible(pose) else _full
     found, rigid_mode, caveat = analyse(pose, E)
@@ -134,7 +160,7 @@ def modes(pose: Pose, loop: Asked = None) -> Modes:
     verdict = all(_is_positive(mode) for mode in found)
     if caveat in (PROPORTIONAL, INDICATOR) and _shares_one_beta(reduced_arrays(pose, E)):
         verdict, caveat = True, ONE_BETA
-    return Modes(pose, tuple(found), rigid_mode, verdict, caveat)
+    return Modes(pose, tuple(found), rigid_mode, verdict, caveat, asked.E is not None)
 
 
 def _reduced(pose: Pose, E: Array) -> tuple[list[Mode], Array, str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import ClassVar
 
 import numpy as np
 
@@ -12,6 +12,10 @@ from flexbase.linear.linearise import check_definite_inertia
 from flexbase.measures.registry import Configuration, measure
 from flexbase.model.loop import Asked, loop_on
 from flexbase.plant import Pose, check_pose
+from flexbase.sheets.numbers import number
+from flexbase.sheets.plain import Plain
+from flexbase.sheets.sheet import Column, Sheet, facts, make_sheet, table, words
+from flexbase.sheets.told import Told
 from flexbase.trace.algebra import Matrix, Scalar, Vector, absolute, atan2, dot, ldl, norm, scale, select
 from flexbase.trace.eigen import symmetric_eigen
 
@@ -19,7 +23,7 @@ CONVENTIONS = ("force", "torque")
 
 
 @dataclass(frozen=True, eq=False)
-class Ellipsoid:
+class Ellipsoid(Plain):
     """Tip accelerations of the arm on a rigid base, for inputs of at most 1.
 
     convention : "force", |f| <= 1: semi-axes are the eigenvalues of R0 = Jv X^-1 Jv^T  [U03 eq 20];
@@ -30,6 +34,8 @@ class Ellipsoid:
     convention: str
     semi_axes: Array
     directions: Array
+
+    document: ClassVar = ("semi_axes", "directions=directions.T", "volume")
 
     @property
     def volume(self) -> float:
@@ -42,26 +48,27 @@ class Ellipsoid:
         circle = np.column_stack([np.cos(angle), np.sin(angle)])
         return np.asarray((circle * self.semi_axes) @ self.directions.T)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers."""
-        return {
-            "semi_axes": self.semi_axes.tolist(),
-            "directions": self.directions.T.tolist(),
-            "volume": self.volume,
-        }
-
 
 @dataclass(frozen=True, eq=False)
-class Manipulability:
-    """Ellipsoids of one convention, as the arm is and under a compensator.
+class Manipulability(Told):
+    """Ellipsoids of one convention at a pose, as the arm is and under a compensator; the same where there is none.
 
     rotation : angle from the original to the compensated longest axis, for two task rows counted from x to y within
         (-pi/2, pi/2], otherwise without sign [rad]
     volume_ratio : compensated over original
     """
 
+    pose: Pose
     original: Ellipsoid
     compensated: Ellipsoid
+
+    document: ClassVar = (
+        "convention=original.convention",
+        "original",
+        "compensated",
+        "rotation_rad=rotation",
+        "volume_ratio",
+    )
 
     @property
     def rotation(self) -> float:
@@ -77,23 +84,31 @@ class Manipulability:
         """Volume under the compensator over the original one."""
         return self.compensated.volume / self.original.volume
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers, with units in the names."""
-        return {
-            "convention": self.original.convention,
-            "original": self.original.to_dict(),
-            "compensated": self.compensated.to_dict(),
-            "rotation_rad": self.rotation,
-            "volume_ratio": self.volume_ratio,
-        }
-
-    def summary(self) -> str:
-        """Three lines in plain text."""
-        return (
-            f"|{'f' if self.original.convention == 'force' else 'tau'}| <= 1\n"
-            f"  original semi-axes {np.round(self.original.semi_axes, 6).tolist()}\n"
-            f"  compensated semi-axes {np.round(self.compensated.semi_axes, 6).tolist()}, turned by "
-            f"{np.degrees(self.rotation):.3f} deg, volume times {self.volume_ratio:.4f}"
+    def sheet(self) -> Sheet:
+        """Semi-axes and directions of both, and what the compensator changes."""
+        original, compensated = self.original, self.compensated is not self.original
+        ball = "|f| <= 1 N" if original.convention == "force" else "|tau| <= 1 N m (or N)"
+        kinds = {"original": original, **({"compensated": self.compensated} if compensated else {})}
+        directions = (Column(f"direction\n{row}") for row in self.pose.arm.task.rows)
+        rows = (
+            [name if i == 0 else "", number(axis), *(number(entry, 6) for entry in one.directions[:, i])]
+            for name, one in kinds.items()
+            for i, axis in enumerate(one.semi_axes)
+        )
+        change = facts(
+            ("longest axis turned by", f"{number(float(np.degrees(self.rotation)), 6)} deg"),
+            ("volume times", number(self.volume_ratio, 6)),
+        )
+        return make_sheet(
+            self.pose.plant.name,
+            f"dynamic manipulability {'with' if compensated else 'without'} compensator",
+            self.pose.where,
+            make_sheet(
+                f"Convention {original.convention}",
+                ball,
+                table([words("ellipsoid"), Column("semi-axis", "m/s^2"), *directions], rows),
+                change if compensated else None,
+            ),
         )
 
 
@@ -103,9 +118,10 @@ def manipulability(pose: Pose, loop: Asked = None, convention: str = "force") ->
     Raises InputError if M - E is not positive definite or the convention is unknown.
     """
     check_pose(pose)
-    E = loop_on(pose.arm, loop).gain
-    check_definite_inertia(pose, E)
-    return Manipulability(_ellipsoid(pose, np.zeros_like(E), convention), _ellipsoid(pose, E, convention))
+    asked = loop_on(pose.arm, loop)
+    check_definite_inertia(pose, asked.gain)
+    original = _ellipsoid(pose, np.zeros_like(asked.gain), convention)
+    return Manipulability(pose, original, original if asked.E is None else _ellipsoid(pose, asked.gain, convention))
 
 
 def _ellipsoid(pose: Pose, E: Array, convention: str) -> Ellipsoid:

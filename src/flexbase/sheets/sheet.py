@@ -100,8 +100,10 @@ def facts(*rows: tuple[str, str] | None, heading: str = "") -> Facts:
 
 
 def table(columns: Sequence[Column], rows: Iterable[Sequence[str]], heading: str = "") -> Table:
-    """A table. Every row has a text for each column."""
-    return Table(tuple(columns), tuple(tuple(row) for row in rows), heading)
+    """A table. Every row has a text for each column; if one has not, ValueError."""
+    return Table(
+        tuple(columns), tuple(tuple(text for text, _ in zip(row, columns, strict=True)) for row in rows), heading
+    )
 
 
 def answer(good: bool, yes: str, no: str, rest: str = "") -> Answer:

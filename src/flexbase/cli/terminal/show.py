@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Sequence
-from typing import NoReturn
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NoReturn
 
 from rich import box
 from rich.console import Console, RenderableType
@@ -12,9 +13,40 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from flexbase.cli.terminal import screen
+from flexbase.cli.terminal.document import document
+from flexbase.cli.terminal.out import write_out, written
 from flexbase.sheets.numbers import matrix
+from flexbase.sheets.plain import plain
+from flexbase.sheets.sheet import Sheet, together
+from flexbase.sheets.told import Told
 
 GOOD, BAD, QUIET, HEAD = "green", "red", "dim", "bold"
+
+
+def show(command: str, found: Told, json: bool, out: Path | None = None, **also: Any) -> None:
+    """Write what `--out` asks for; then a result as one JSON document, or as its sheet.
+
+    also : further keys of the document; the sheets of results among them stand below
+    """
+    sheet = together(found.sheet(), *_sheets(also.values()))
+    say(command, {**found.to_dict(), **plain(also)}, sheet, json, out, found)
+
+
+def say(
+    command: str, content: Mapping[str, Any], sheet: Sheet, json: bool, out: Path | None = None, drawn: Any = None
+) -> None:
+    """The same of a document and a sheet; `drawn` is what a picture shows."""
+    write_out(out, command, drawn, content)
+    screen.put(document(command, content)) if json else screen.put(sheet, *written(out))
+
+
+def _sheets(values: Iterable[Any]) -> Iterator[Sheet]:
+    for one in values:
+        if isinstance(one, Told):
+            yield one.sheet()
+        elif isinstance(one, list | tuple):
+            yield from _sheets(one)
 
 
 class Screen(Console):

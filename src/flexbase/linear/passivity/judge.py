@@ -21,7 +21,7 @@ from flexbase.linear.passivity.vibration import (
     vibration_of_system,
 )
 from flexbase.linear.second_order import SecondOrder
-from flexbase.model.loop import Asked
+from flexbase.model.loop import Asked, loop_on
 from flexbase.plant import Pose, check_pose
 
 HIDDEN = 1e-6  # of the response near one resonance alone: a shortage that deserves a word
@@ -45,10 +45,12 @@ def verdict(model: Pose | SecondOrder, loop: Asked = None, bandwidth: float | No
         return _judged(None, vibration_of_system(_checked(model)), band)
     check_pose(model)
     alone = None if is_reducible(model) else _judged(None, base_vibration(model, loop), band)
-    return _judged(model, vibration_of(model, loop), band, alone)
+    return _judged(model, vibration_of(model, loop), band, alone, loop_on(model.arm, loop).E is not None)
 
 
-def _judged(pose: Pose | None, vibration: Vibration, band: Interval, alone: Verdict | None = None) -> Verdict:
+def _judged(
+    pose: Pose | None, vibration: Vibration, band: Interval, alone: Verdict | None = None, compensated: bool = False
+) -> Verdict:
     whole = vibration.force_to_velocity()
     port = compressed(whole)
     gain = largest_gain(port, band)
@@ -88,6 +90,7 @@ def _judged(pose: Pose | None, vibration: Vibration, band: Interval, alone: Verd
         undamped=tuple(mode.frequency for mode in vibration.undamped),
         bandwidth=None if np.isinf(band[1]) else band[1],
         caveats=(*_caveats(vibration, bad, rigid_fails, all(one.settled for one in searched)), *cautions),
+        compensated=compensated,
         base_alone=alone,
         port=port,
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -11,12 +11,15 @@ from flexbase.checks import Array
 from flexbase.linear.passivity.level_search import Interval
 from flexbase.linear.passivity.port import Port
 from flexbase.plant import Pose
+from flexbase.sheets.numbers import number
+from flexbase.sheets.sheet import Sheet, answer, facts, make_sheet
+from flexbase.sheets.told import Told
 
 POSITIVE_REAL = 1e-8  # of the largest response: the shortage up to which it counts as positive real  [theory §5]
 
 
 @dataclass(frozen=True, eq=False)
-class Verdict:
+class Verdict(Told):
     """Positive realness of G(s) = s P(s), tip force to tip velocity, and negative imaginariness of P.  [theory §5]
 
     With F = G - R0/s - undamped modes, H = (F + F*)/2 over 0 <= omega, or up to `bandwidth`:
@@ -40,6 +43,7 @@ class Verdict:
     rigid_mode : R0, shape (k, k)
     undamped : frequencies of vibrations without damping [rad/s]
     caveats : plain words
+    compensated : whether a compensator is at work
     base_alone : the verdict with the springs and dampers of the base alone, where gravity's stiffness or joint friction
         are counted; else None
     port : F without directions that have no response
@@ -64,8 +68,27 @@ class Verdict:
     undamped: tuple[float, ...]
     bandwidth: float | None
     caveats: tuple[str, ...]
+    compensated: bool
     base_alone: Verdict | None
     port: Port = field(repr=False)
+
+    document: ClassVar = (
+        "*_place",
+        "*_answer",
+        "negative_imaginary_relative_shortage=negative_imaginary_shortage",
+        "half_at_rad_s=half_at",
+        "input_index",
+        "output_index",
+        "largest_gain",
+        "largest_gain_at_rad_s=largest_at",
+        "skew_low",
+        "skew_high",
+        "rigid_mode",
+        "undamped_rad_s=undamped",
+        "bandwidth_rad_s=bandwidth",
+        "caveats",
+        "base_alone=base_alone._answer",
+    )
 
     @property
     def name(self) -> str:
@@ -99,26 +122,29 @@ class Verdict:
         """lambda_min of H at frequencies [rad/s]."""
         return self.port.least_eigenvalue(np.asarray(omega, dtype=float))
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers, with units in the names."""
-        place = {} if self.pose is None else {"q": self.pose.q.tolist(), "tip": self.pose.tip.tolist()}
-        return {
-            **place,
-            **self._answer(),
-            "negative_imaginary_relative_shortage": self.negative_imaginary_shortage,
-            "half_at_rad_s": [list(interval) for interval in self.half_at],
-            "input_index": self.input_index,
-            "output_index": self.output_index,
-            "largest_gain": self.largest_gain,
-            "largest_gain_at_rad_s": self.largest_at,
-            "skew_low": self.skew_low,
-            "skew_high": self.skew_high,
-            "rigid_mode": self.rigid_mode.tolist(),
-            "undamped_rad_s": list(self.undamped),
-            "bandwidth_rad_s": self.bandwidth,
-            "caveats": list(self.caveats),
-            "base_alone": None if self.base_alone is None else self.base_alone._answer(),
-        }
+    def sheet(self) -> Sheet:
+        """How far from positive real, where, and whether that is enough."""
+        index = "open" if self.output_index is None else number(self.output_index, 6)
+        if self.output_index == -np.inf:
+            index = "none: no feedback of the velocity makes it passive"
+        scope = "" if self.bandwidth is None else f", up to {number(self.bandwidth, 6)} rad/s"
+        return make_sheet(
+            self.name,
+            f"exact verdict {'with' if self.compensated else 'without'} compensator{scope}",
+            None if self.pose is None else self.pose.where,
+            facts(
+                ("shortage", self.in_words()),
+                ("worst at", f"{number(self.worst_at, 6)} rad/s") if self.half_at else None,
+                ("half of it", self.half_in_words()) if self.half_at else None,
+                ("fails", self.failing_in_words()) if self.fails_at else None,
+                ("negative imaginary", "yes" if self.negative_imaginary else "no"),
+                ("output-passivity index", index),
+            ),
+            answer(self.positive_real, "Positive real", "Not positive real", " ".join(self.caveats)),
+        )
+
+    def _place(self) -> dict[str, Any]:
+        return {} if self.pose is None else {"q": self.pose.q, "tip": self.pose.tip}
 
     def _answer(self) -> dict[str, Any]:
         return {
@@ -127,23 +153,8 @@ class Verdict:
             "relative_shortage": self.relative_shortage,
             "negative_imaginary": self.negative_imaginary,
             "worst_at_rad_s": self.worst_at,
-            "fails_at_rad_s": [list(interval) for interval in self.fails_at],
+            "fails_at_rad_s": self.fails_at,
         }
-
-    def summary(self) -> str:
-        """A few lines in plain text."""
-        where = "" if self.pose is None else f" at tip {np.round(self.pose.tip, 6).tolist()}"
-        scope = "" if self.bandwidth is None else f" up to {self.bandwidth:.6g} rad/s"
-        lines = [
-            f"{self.name}{where}: {'' if self.positive_real else 'not '}positive real{scope}",
-            f"  shortage {self.in_words()}",
-            *([] if self.worst_at is None else [f"  worst at {self.worst_at:.6g} rad/s"]),
-            *([] if not self.fails_at else [f"  fails {self.failing_in_words()}"]),
-            *([] if not self.half_at else [f"  half of it {self.half_in_words()}"]),
-            f"  {'' if self.negative_imaginary else 'not '}negative imaginary",
-            f"  output-passivity index {'open' if self.output_index is None else f'{self.output_index:.6g}'}",
-        ]
-        return "\n".join([*lines, *(f"  {caveat}" for caveat in self.caveats)])
 
 
 def _joined(intervals: list[list[str]]) -> str:
