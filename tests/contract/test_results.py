@@ -7,7 +7,7 @@ import json
 import pytest
 
 import flexbase as fb
-from contract.results import EXAMPLES
+from contract.results import EXAMPLES, example
 from flexbase.sheets.html import html
 from flexbase.sheets.plain import plain
 from flexbase.sheets.told import Told
@@ -16,12 +16,12 @@ from sheets.reading import Page, on_terminal, signs, words_of
 
 @pytest.fixture(scope="module", params=EXAMPLES, ids=str)
 def result(request: pytest.FixtureRequest) -> Told:
-    return EXAMPLES[request.param]()
+    return example(request.param)
 
 
 def test_every_result_class_of_the_public_face_has_an_example():
     told = {one for one in vars(fb).values() if isinstance(one, type) and issubclass(one, Told)}
-    assert {type(make()) for make in EXAMPLES.values()} == told
+    assert {type(example(name)) for name in EXAMPLES} == told
 
 
 def test_a_sheet_has_a_heading_and_something_to_say(result):

@@ -10,10 +10,9 @@ from flexbase.cli.options.common import Json
 from flexbase.cli.options.gains import GainOptions
 from flexbase.cli.options.pose import PoseOptions, Robot
 from flexbase.cli.options.sensing import SensingOptions
-from flexbase.cli.terminal.document import document
-from flexbase.cli.terminal.out import OutFile, check_out, write_out, written
+from flexbase.cli.terminal.out import OutFile, check_out
 from flexbase.cli.terminal.progress import progress_bar
-from flexbase.cli.terminal.screen import put
+from flexbase.cli.terminal.show import show
 from flexbase.model.loop import Loop
 from flexbase.plant import load
 from flexbase.study.running.recommend import recommend
@@ -46,7 +45,5 @@ def recommend_controller(
     with progress_bar() as report:
         sensing = run.sensing(plant) if run.declared(plant) else None
         found = recommend(pose.pose(plant), loop=Loop(None, loop.gains(plant), sensing), workers=None, progress=report)
-    content = found.to_dict()
-    write_out(out, "recommend", found, content)
-    put(document("recommend", content)) if json else put(found.sheet(), *written(out))
+    show("recommend", found, json, out)
     return 0 if found.best else 1

@@ -9,10 +9,9 @@ from cyclopts import App, Parameter
 from flexbase.cli.options.common import Json, option
 from flexbase.cli.options.pose import Robot
 from flexbase.cli.options.words import Names, names
-from flexbase.cli.terminal.document import document
-from flexbase.cli.terminal.out import OutFile, check_out, write_out, written
+from flexbase.cli.terminal.out import OutFile, check_out
 from flexbase.cli.terminal.progress import progress_bar
-from flexbase.cli.terminal.screen import put
+from flexbase.cli.terminal.show import show
 from flexbase.plant import load
 from flexbase.study.agreement.study import TRIALS, agreement_study
 
@@ -53,7 +52,5 @@ def study_agreement(
         found = agreement_study(
             plant, poses=poses, seed=seed, trial=trial, methods=methods or None, workers=workers, progress=report
         )
-    content = found.to_dict()
-    write_out(out, "study agreement", found, content)
-    put(document("study agreement", content)) if json else put(found.sheet(), *written(out))
+    show("study agreement", found, json, out)
     return 0 if found.good else 1

@@ -9,10 +9,9 @@ from cyclopts import App, Parameter
 from flexbase.cli.options.common import Json, option
 from flexbase.cli.options.pose import Robot
 from flexbase.cli.options.words import Names, names
-from flexbase.cli.terminal.document import document
-from flexbase.cli.terminal.out import OutFile, check_out, write_out, written
+from flexbase.cli.terminal.out import OutFile, check_out
 from flexbase.cli.terminal.progress import progress_bar
-from flexbase.cli.terminal.screen import put
+from flexbase.cli.terminal.show import show
 from flexbase.plant import load
 from flexbase.study.running.hardware_study import hardware_study
 from flexbase.synthesis import HARDWARE_METHODS
@@ -53,6 +52,4 @@ def study_hardware(
             workers=workers,
             progress=lambda done, total: report("poses times methods", done, total),
         )
-    content = found.to_dict()
-    write_out(out, "study hardware", found, content)
-    put(document("study hardware", content)) if json else put(found.sheet(), *written(out))
+    show("study hardware", found, json, out)

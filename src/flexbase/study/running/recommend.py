@@ -96,13 +96,14 @@ class Recommendation(Told):
         """Six lines that a person can act on."""
         clock = f"{self.sensing.rate:g} Hz, {self.sensing.compute_delay} + {self.sensing.task_delay} samples late"
         said = "as declared" if self.declared else "assumed: the project declares no [sensing]"
+        ideal = f"Ideal loop: the plant is {'' if self.positive_real else 'not '}positive real here"
         if self.best is None or self.best.verdict is None:
             return [
                 f"Use: none of the methods is stable at this pose ({clock}, {said}).",
                 "Why: " + "; ".join(f"{one.method}: {_flaw(one)}" for one in self.candidates) + ".",
                 "Cost: nothing runs, so nothing is lost by lower gains: halve the task stiffness and ask again.",
                 "Needs: less delay, a faster rate, or a stiffer base.",
-                f"Ideal loop: the plant is {'' if self.positive_real else 'not '}positive real here.",
+                f"{ideal}.",
                 "Change: " + self._turns(),
             ]
         verdict, best = self.best.verdict, self.best
@@ -116,9 +117,7 @@ class Recommendation(Told):
             f"{best.torque_noise:.3g} N m. It corrects {100.0 * _correction(best):.0f} % of what only the tip shows.",
             f"Needs: {', '.join(best.sensors)}; base stiffness known to "
             + (f"{100.0 * best.stiffness_error:.0f} %." if best.stiffness_error else "better than 5 %."),
-            f"Ideal loop: the plant is {'' if self.positive_real else 'not '}positive real here; "
-            + "; ".join(f"{one.method}: {_flaw(one)}" for one in others[:4])
-            + ".",
+            "; ".join([ideal, *(f"{one.method}: {_flaw(one)}" for one in others[:4])]) + ".",
             "Change: " + self._turns(),
         ]
 
