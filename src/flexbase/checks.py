@@ -10,12 +10,13 @@ from typing import Any, TypeVar, Union, get_args, get_origin
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flexbase.errors import InputError, nearest_name
+from flexbase.errors import InputError, Unsolvable, nearest_name
 from flexbase.requests import options_of
 
 Array = NDArray[np.float64]
 Choice = TypeVar("Choice")
 WORDS = {float: "a number", int: "a whole number", str: "a word", bool: "True or False"}
+LARGEST = 1e100  # of an entry of a gain or a base matrix: products of some stay finite
 FARTHEST = 1e6  # rad or m of a joint or a target: beyond, sine and cosine lose their digits
 
 
@@ -85,7 +86,32 @@ def square_or_diagonal(name: str, value: ArrayLike, size: int, unit: str) -> Arr
         raise InputError(
             f"{name}: shape {array.shape} given, ({size}, {size}) or {size} number{'s' * (size != 1)} needed."
         )
-    return check_symmetric(name, array, unit)
+    return check_symmetric(name, check_within(name, array, LARGEST, unit), unit)
+
+
+def is_definite(matrix: Array, of: Array | None = None) -> bool:
+    """Whether a symmetric matrix is positive definite beyond rounding, whatever the units of its rows.
+
+    Its Cholesky factor exists then, so neither it nor a principal block or a Schur complement of it is singular.
+    [H02 thm 10.7]
+
+    of : what it is a difference of, whose rounding it has; itself if left out
+    """
+    sizes = np.maximum(np.diag(matrix), np.diag(matrix if of is None else of))
+    if not np.all(sizes > 0.0):
+        return False
+    unit = np.sqrt(sizes)
+    return float(np.linalg.eigvalsh(matrix / unit / unit[:, None])[0]) > 2.0 * len(sizes) ** 2 * float(
+        np.finfo(float).eps
+    )
+
+
+def inverse(matrix: Array, refusal: str) -> Array:
+    """The inverse of a matrix, or a stack, that may be singular. Raises Unsolvable: what that means, and the mend."""
+    try:
+        return np.asarray(np.linalg.inv(matrix))
+    except np.linalg.LinAlgError as fault:
+        raise Unsolvable(refusal) from fault
 
 
 def check_definite(name: str, matrix: Array, unit: str, *, allow_zero: bool, why: str) -> Array:

@@ -31,6 +31,10 @@ class Infeasible(FlexbaseError):
     """The question was understood and the answer is no: no such design exists."""
 
 
+class Unsolvable(Infeasible):
+    """An equation that the answer rests on has no solution: a singular matrix, no stabilising feedback."""
+
+
 class MissingExtra(FlexbaseError):
     """An optional package is not installed; the message names the extra that brings it."""
 

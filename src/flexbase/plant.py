@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexbase.cautions import caution
-from flexbase.checks import FARTHEST, Array, check_length, check_within, finite_array
+from flexbase.checks import FARTHEST, Array, check_length, check_within, finite_array, is_definite
 from flexbase.dynamics.inertia import mass_matrix
 from flexbase.dynamics.inverse.arm_angles import Solution, arm_angles, arm_solutions
 from flexbase.dynamics.kinematics import Frames, forward, task_jacobian
@@ -256,7 +256,7 @@ def inertia_at(mechanism: Mechanism, q: Array) -> Array:
 
 def _check_inertia(pose: Pose) -> None:
     eigenvalues = np.linalg.eigvalsh(pose.M)
-    if eigenvalues[0] <= np.finfo(float).eps * eigenvalues[-1]:
+    if eigenvalues[0] <= np.finfo(float).eps * eigenvalues[-1] or not is_definite(pose.M):
         raise InputError(
             f"{pose.plant.name}: the inertia matrix at q = {np.round(pose.q, 4).tolist()} is not positive definite "
             f"(smallest eigenvalue {eigenvalues[0]:.3g}). Give the massless links a mass or an inertia."

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from flexbase.checks import Array
+from flexbase.checks import Array, is_definite
 from flexbase.errors import InputError
 from flexbase.linear.reduced import reduce_arm
 from flexbase.linear.second_order import SecondOrder
@@ -49,10 +49,10 @@ def modified_inertia(pose: Pose, E: Array) -> Array:
 
 
 def check_definite_inertia(pose: Pose, E: Array) -> Array:
-    """M - blkdiag(0, E), positive definite. Raises InputError otherwise."""
+    """M - blkdiag(0, E), positive definite beyond rounding. Raises InputError otherwise."""
     M = modified_inertia(pose, E)
-    smallest = float(np.linalg.eigvalsh(M)[0])
-    if smallest <= 0.0:
+    if not is_definite(M, pose.M):
+        smallest = float(np.linalg.eigvalsh(M)[0])
         raise InputError(
             f"compensator: M - E is not positive definite at q = {np.round(pose.q, 4).tolist()} (smallest eigenvalue "
             f"{smallest:.4g}), so the arm would run away. Use it nearer to the pose it was designed for."

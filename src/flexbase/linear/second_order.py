@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexbase.checks import Array
-from flexbase.errors import import_extra
+from flexbase.errors import InputError, import_extra
 
 
 class StateSpace(NamedTuple):
@@ -21,11 +21,20 @@ class StateSpace(NamedTuple):
     D: Array
 
 
+def solved_at(where: np.ndarray, matrices: np.ndarray, B: Array) -> np.ndarray:
+    """matrices^-1 B of a response at complex frequencies, shape (..., 1, 1). Raises InputError at a pole."""
+    try:
+        return np.linalg.solve(matrices, np.broadcast_to(B.astype(complex), (*matrices.shape[:-2], *B.shape)))
+    except np.linalg.LinAlgError as fault:
+        pole = where[np.linalg.slogdet(matrices).sign == 0.0].ravel()[:1]
+        raise InputError(f"frequency: {pole} is a pole, where the response is infinite. Give another one.") from fault
+
+
 @dataclass(frozen=True, eq=False)
 class SecondOrder:
     """M q'' + D q' + K q = B f,  y = C q.  [U03 eq 3-4]
 
-    M, D, K : shape (N, N), M invertible
+    M, D, K : shape (N, N), M positive definite, as `check_definite_inertia` and `verdict` see to
     B : shape (N, inputs); C : shape (outputs, N)
     joint_names, input_names, output_names : for labels and for the named signals of `to_control`
     """
@@ -40,12 +49,12 @@ class SecondOrder:
     output_names: tuple[str, ...]
 
     def transfer_function(self, s: ArrayLike) -> Any:
-        """P(s) = C (M s^2 + D s + K)^-1 B at complex frequencies s, shape (..., outputs, inputs)."""
+        """P(s) = C (M s^2 + D s + K)^-1 B at complex frequencies s, shape (..., outputs, inputs).
+
+        Raises InputError at a pole, which an undamped mode has on the imaginary axis, a rigid motion at 0.
+        """
         s = np.asarray(s, dtype=complex)[..., None, None]
-        return self.C @ np.linalg.solve(
-            self.M * s * s + self.D * s + self.K,
-            np.broadcast_to(self.B.astype(complex), (*s.shape[:-2], *self.B.shape)),
-        )
+        return self.C @ solved_at(s, self.M * s * s + self.D * s + self.K, self.B)
 
     def state_space(self) -> StateSpace:
         """State x = [q; q'], of order 2N."""

@@ -12,7 +12,7 @@ from typing import NamedTuple, Protocol, runtime_checkable
 import numpy as np
 
 from flexbase.cautions import caution
-from flexbase.checks import Array, check_symmetric, finite_array
+from flexbase.checks import LARGEST, Array, check_symmetric, check_within, finite_array
 from flexbase.errors import InputError
 from flexbase.model.mounted import MountedArm
 from flexbase.model.sensing import TYPICAL, Sensing, checked_sensing
@@ -119,7 +119,7 @@ def gain_on(arm: MountedArm, compensator: object) -> Array:
     made_for = getattr(compensator, "robot", arm.name)
     if made_for != arm.name:
         caution(f'compensator: designed for "{made_for}", used on "{arm.name}".')
-    return check_symmetric("compensator E", given, "")
+    return check_symmetric("compensator E", check_within("compensator E", given, LARGEST, "kg m^2 or kg"), "")
 
 
 def _designed_at(arm: MountedArm, compensator: object) -> Array | None:

@@ -176,7 +176,7 @@ def judged(controller: SampledController, pose: Pose | None = None, changes: Seq
 
 
 def _shifted(L: np.ndarray) -> np.ndarray:
-    eye = np.eye(L.shape[-1])
+    eye = np.eye(L.shape[-1])  # I - L is regular: a stable loop has no pole on the unit circle
     return np.asarray(np.linalg.inv(eye - L) - 0.5 * eye)
 
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from flexbase.cautions import caution
-from flexbase.checks import Array, check_symmetric, finite_array
+from flexbase.checks import Array, check_symmetric, finite_array, is_definite
 from flexbase.compensators.judge.lag_law import lag_limit
 from flexbase.compensators.judge.statement import statement
 from flexbase.control.compensator import Certificate, Compensator
+from flexbase.errors import Infeasible
 from flexbase.linear.linearise import is_reducible, modified_inertia
 from flexbase.linear.margins import (
     algebraic_loop_radius,
@@ -40,10 +41,12 @@ def certify(
     target_residual : how far the method's own equations are from holding; None if the gain was not designed here
     gains : for the closed loop; the project's own if left out
     cautions : the method's own; they take the place of the general one about missed targets
-    Cautions when the algebraic loop does not bear a common delay.
+    Cautions when the algebraic loop does not bear a common delay. Raises Infeasible where M - E > 0 is lost in rounding.
     """
     E = check_symmetric("E", finite_array("E", E), "")
     gains = loop_on(pose.arm, Loop(gains=gains)).given_gains
+    if not is_definite(modified_inertia(pose, E), pose.M):
+        raise Infeasible(f"{method}: what meets the targets leaves M - E no inertia in some direction. Ask for less.")
     before, after = modes(pose).modes, modes(pose, Gain(E)).modes
     rho, mu = algebraic_loop_radius(pose, E), algebraic_loop_radius_per_joint(pose, E)
     cautions = (

@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from flexbase.checks import Array
+from flexbase.checks import Array, inverse
 from flexbase.linear.discrete.disk_margin import balancing, grid_of, scaled, spectral_norm, tighter
-from flexbase.linear.discrete.system import Discrete, series
+from flexbase.linear.discrete.system import ALGEBRAIC, Discrete, series
 
 NEAR = 0.75  # share of the largest from which further peaks and poles count
 PEAKS = 6
@@ -58,11 +58,11 @@ class AffineLoop:
 
     def poles(self, theta: Array) -> list[Piece]:
         """Moduli of the closed loop's eigenvalues, a sample each: the largest, and those near it, one of a pair."""
-        matrices, inverse = [], []
+        matrices, through = [], []
         for one in self._steps:
-            right = np.linalg.inv(np.eye(len(one.C)) - one.D @ theta)
+            right = inverse(np.eye(len(one.C)) - one.D @ theta, ALGEBRAIC)
             matrices.append(one.A + one.B @ theta @ right @ one.C)
-            inverse.append((np.linalg.inv(np.eye(theta.shape[0]) - theta @ one.D), right))
+            through.append((inverse(np.eye(theta.shape[0]) - theta @ one.D, ALGEBRAIC), right))
         count = len(matrices)
         whole = np.linalg.multi_dot(matrices[::-1]) if count > 1 else matrices[0]
         values, right_vectors = np.linalg.eig(whole)
@@ -78,7 +78,7 @@ class AffineLoop:
                 after.insert(0, after[0] @ matrix)
             slope = sum(
                 np.outer(l @ one.B @ into, out @ one.C @ r)
-                for one, (into, out), l, r in zip(self._steps, inverse, after, before, strict=True)
+                for one, (into, out), l, r in zip(self._steps, through, after, before, strict=True)
             )
             size = float(sizes[i])
             turned = np.real(np.conj(values[i]) * slope) / max(size, 1e-12)
@@ -89,7 +89,7 @@ class AffineLoop:
     def _frequencies(self, theta: Array) -> Array:
         """Where the closed loop's own poles turn, beyond the grid."""
         whole = series(self.averaged, self.estimator)
-        right = np.linalg.inv(np.eye(len(whole.C)) - whole.D @ theta)
+        right = inverse(np.eye(len(whole.C)) - whole.D @ theta, ALGEBRAIC)
         values = np.linalg.eigvals(whole.A + whole.B @ theta @ right @ whole.C)
         weak = values[(np.abs(values) > 0.8) & (values.imag > 1e-9)]
         turning = np.angle(weak) / whole.step
@@ -113,7 +113,7 @@ class AffineLoop:
 
 def _at_torques(theta: Array, P: np.ndarray, F: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """S - I/2 with S = (I + L)^-1, and left and right in dS = left dTheta right."""
-    eye = np.eye(P.shape[2])
+    eye = np.eye(P.shape[2])  # S is regular: a stable loop has no pole on the unit circle
     S = np.linalg.inv(eye - theta @ F @ P)
     return S - 0.5 * eye, S, F @ (P @ S)
 

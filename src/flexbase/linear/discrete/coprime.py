@@ -22,7 +22,7 @@ def coprime_controller(plant: Discrete, factor: float = 1.1) -> tuple[Discrete, 
     Assumes a stabilisable and detectable plant. The controller's margin b is at least b_opt / factor.
 
     factor : above 1; the nearer, the faster the controller's own poles
-    Raises numpy.linalg.LinAlgError where a Riccati equation has no stabilising solution.
+    Raises Unsolvable where a Riccati equation has no stabilising solution.
     """
     continuous = to_continuous(plant)
     A, B, C, D = continuous
@@ -34,7 +34,7 @@ def coprime_controller(plant: Discrete, factor: float = 1.1) -> tuple[Discrete, 
     b_opt = float((1.0 + largest) ** -0.5)
     gamma = factor / b_opt
     F = -np.linalg.solve(S, D.T @ C + B.T @ X)
-    W = np.eye(len(A)) + X @ Z - gamma**2 * np.eye(len(A))
+    W = np.eye(len(A)) + X @ Z - gamma**2 * np.eye(len(A))  # regular: gamma^2 is above each eigenvalue of I + X Z
     gain = gamma**2 * np.linalg.solve(W.T, Z @ C.T)
     controller = StateSpace(np.asarray(A + B @ F + gain @ (C + D @ F)), np.asarray(gain), B.T @ X, -D.T)
     return to_discrete(controller, plant.step), b_opt
@@ -55,7 +55,7 @@ def coprime_margin(plant: Discrete, controller: Discrete) -> float:
 
 def _four_blocks(P: np.ndarray, K: np.ndarray) -> Array:
     eye = np.eye(P.shape[1])
-    loop = np.linalg.inv(eye - P @ K)
+    loop = np.linalg.inv(eye - P @ K)  # regular: a stable loop has no pole on the unit circle
     left = np.concatenate([K, np.broadcast_to(eye, (len(P), *eye.shape))], axis=1)
     right = np.concatenate([np.broadcast_to(eye, (len(P), *eye.shape)), P], axis=2)
     return np.asarray(np.linalg.norm(left @ loop @ right, 2, axis=(1, 2)))

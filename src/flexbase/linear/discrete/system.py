@@ -8,8 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg
 
-from flexbase.checks import Array
-from flexbase.linear.second_order import StateSpace
+from flexbase.checks import Array, inverse
+from flexbase.linear.second_order import StateSpace, solved_at
+
+ALGEBRAIC = (
+    "loop: the torque of a sample would depend on itself, with gain 1 (an algebraic loop). Give a compute_delay, an "
+    "accelerometer_lag or a smaller E."
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,12 +36,14 @@ class Discrete:
         return len(self.A)
 
     def transfer_function(self, frequencies: Array) -> np.ndarray:
-        """C (zI - A)^-1 B + D at z = exp(j omega step), shape (frequencies, outputs, inputs); omega in rad/s."""
+        """C (zI - A)^-1 B + D at z = exp(j omega step), shape (frequencies, outputs, inputs); omega in rad/s.
+
+        Raises InputError at a pole on the unit circle.
+        """
         z = np.exp(1j * np.asarray(frequencies) * self.step)[:, None, None]
         if not self.order:
             return np.broadcast_to(self.D.astype(complex), (len(z), *self.D.shape))
-        moved = np.linalg.solve(z * np.eye(self.order) - self.A, np.broadcast_to(self.B, (len(z), *self.B.shape)))
-        return self.C @ moved + self.D
+        return np.asarray(self.C @ solved_at(z, z * np.eye(self.order) - self.A, self.B) + self.D)
 
     def static_gain(self) -> Array:
         """Response to a constant input, after all has settled, shape (outputs, inputs)."""
@@ -120,13 +127,13 @@ def parallel(*systems: Discrete) -> Discrete:
 def feedback(plant: Discrete, controller: Discrete, external: int = 0) -> Discrete:
     """The loop u = K y + d: from d, and the plant's last `external` inputs which the controller leaves alone, to y.
 
-    Raises numpy.linalg.LinAlgError where the algebraic loop D_K D_P has an eigenvalue 1.
+    Raises Unsolvable where the algebraic loop D_K D_P has an eigenvalue 1.
     """
     driven = plant.B.shape[1] - external
     Bu, Bw = plant.B[:, :driven], plant.B
     Du, Dw = plant.D[:, :driven], plant.D
     eye = np.eye(driven)
-    loop = np.linalg.inv(eye - controller.D @ Du)
+    loop = inverse(eye - controller.D @ Du, ALGEBRAIC)
     # u = loop (D_K (C x + D_w w) + C_K x_K) + first part of w, where w = [d; external]
     from_plant, from_controller = loop @ controller.D @ plant.C, loop @ controller.C
     from_w = loop @ controller.D @ Dw

@@ -4,34 +4,35 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexbase.checks import Array
+from flexbase.checks import Array, inverse
 from flexbase.linear.discrete.system import Discrete
 from flexbase.linear.second_order import StateSpace
 
 ROOT = np.sqrt(2.0)
+HALF_WAY = "loop: a pole at exactly half the sampling rate has no continuous image. Give another rate."
 
 
 def to_continuous(system: Discrete) -> StateSpace:
     """The system in w = (z - 1)/(z + 1), time counted in half samples: |z| = 1 becomes the imaginary axis.
 
-    Assumes no pole at z = -1 (raises numpy.linalg.LinAlgError).
+    Raises Unsolvable for a pole at z = -1.
     """
-    inverse = np.linalg.inv(system.A + np.eye(system.order))
-    B = inverse @ system.B
+    inverted = inverse(system.A + np.eye(system.order), HALF_WAY)
+    B = inverted @ system.B
     return StateSpace(
-        inverse @ (system.A - np.eye(system.order)), ROOT * B, ROOT * system.C @ inverse, system.D - system.C @ B
+        inverted @ (system.A - np.eye(system.order)), ROOT * B, ROOT * system.C @ inverted, system.D - system.C @ B
     )
 
 
 def to_discrete(system: StateSpace, step: float) -> Discrete:
-    """The way back, at any sampling interval. Assumes no pole at w = 1."""
+    """The way back, at any sampling interval. Raises Unsolvable for a pole at w = 1."""
     order = len(system.A)
-    inverse = np.linalg.inv(np.eye(order) - system.A)
-    B = inverse @ system.B
+    inverted = inverse(np.eye(order) - system.A, HALF_WAY)
+    B = inverted @ system.B
     return Discrete(
-        np.asarray(inverse @ (np.eye(order) + system.A)),
+        np.asarray(inverted @ (np.eye(order) + system.A)),
         ROOT * B,
-        ROOT * system.C @ inverse,
+        ROOT * system.C @ inverted,
         np.asarray(system.D + system.C @ B),
         step,
     )

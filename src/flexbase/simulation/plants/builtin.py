@@ -30,9 +30,13 @@ def accelerations(pose: Pose, frames: Frames, q: Array, rates: Array, torque: Ar
 
 
 def solved(arm: MountedArm, M: Matrix, force: Array, E: Array | None) -> Array:
-    """q'' of (M - blkdiag(0, E)) q'' = force, shape (..., N)."""
+    """q'' of (M - blkdiag(0, E)) q'' = force, shape (..., N); NaN where a trial step meets a singular M - E."""
     whole = stack(under_gain(arm, M, None if E is None else E.tolist()))
-    return np.asarray(np.linalg.solve(whole, force[..., None])[..., 0])
+    try:
+        return np.asarray(np.linalg.solve(whole, force[..., None])[..., 0])
+    except np.linalg.LinAlgError:
+        regular = np.linalg.slogdet(whole).sign != 0.0
+        return np.asarray(np.linalg.solve(np.where(regular[..., None, None], whole, np.nan), force[..., None])[..., 0])
 
 
 def keeps_inertia(arm: MountedArm, frames: Frames, E: Array | None) -> bool:

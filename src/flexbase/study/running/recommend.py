@@ -205,7 +205,7 @@ def _candidate(task: Task) -> Candidate:
     try:
         controller = controller_for(pose, name, sensing, gains)
         verdict = hardware_verdict(controller, brief=brief)
-    except (FlexbaseError, np.linalg.LinAlgError) as fault:
+    except FlexbaseError as fault:
         return Candidate(name, purpose, None, refusal=str(fault).split(". ")[0])
     if brief or not verdict.stable:
         return Candidate(name, purpose, verdict, sensors=_sensors(controller))

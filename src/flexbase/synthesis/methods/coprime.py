@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from flexbase.errors import Infeasible
+from flexbase.errors import Infeasible, Unsolvable
 from flexbase.linear.discrete.coprime import coprime_controller
 from flexbase.linear.discrete.system import spectral_radius
 from flexbase.linear.discrete.tustin import balanced_truncation
@@ -48,7 +46,7 @@ def coprime(
         def attempt(size: float, weight: float = weight) -> Judged | None:
             try:
                 return Judged(coprime_at(pose, sensing, gains, size, weight, order=order), robots)
-            except np.linalg.LinAlgError:
+            except Unsolvable:
                 return None
 
         found += stiffest(attempt, margin) if scale is None else [one for one in [attempt(scale)] if one is not None]
@@ -63,14 +61,14 @@ def coprime_at(
     joint_weight: float,
     order: int | None = None,
 ) -> SampledController:
-    """One controller, not searched for. Raises numpy.linalg.LinAlgError where it does not exist, Infeasible."""
+    """One controller, not searched for. Raises Unsolvable where it does not exist, Infeasible."""
     shape = task_shape(pose, gains, scale, joint_weight)
     central, b_opt = coprime_controller(shape.around(design_plant(pose, sensing)), FACTOR)
     if order is not None:
         if not 1 <= order <= central.order:
             raise Infeasible(f"order: {order} states asked, and the controller has {central.order}. Give 1 to that.")
         if spectral_radius(central.A) >= 1.0:
-            raise np.linalg.LinAlgError("an unstable controller has no Gramians")
+            raise Unsolvable("order: an unstable controller cannot be truncated. Leave the order out.")
         central, _ = balanced_truncation(central, order)
     notes = {"b_opt": b_opt, "scale": scale, "joint_weight": joint_weight, "order": central.order}
     return SampledController("coprime", pose, sensing, shape.unfold(central), None, notes)

@@ -11,7 +11,7 @@ from collections.abc import Callable
 import numpy as np
 
 from flexbase.cautions import collected
-from flexbase.checks import Array, check_symmetric, finite_array
+from flexbase.checks import Array, check_symmetric, finite_array, inverse
 from flexbase.compensators.registry import design
 from flexbase.errors import FlexbaseError, Infeasible, InputError
 from flexbase.linear.discrete.affine_loop import AffineLoop
@@ -30,6 +30,7 @@ from flexbase.synthesis.search.stiffest import best_of
 
 SEEN = 1e-6  # smallest to largest singular value of Jp, below which the tip does not tell the base's deflection
 SHARE = 0.4  # of the ideal design, where the second descent starts
+FREE = "E: in some direction all of the arm's inertia on a free base, which needs endless torques. Give less."
 LOOKS = 60  # of each descent
 
 
@@ -63,9 +64,9 @@ def deflection(pose: Pose, sensing: Sensing, gains: Gains, *, E: Array | None = 
 
 
 def with_deflection(pose: Pose, sensing: Sensing, gains: Gains, E: Array) -> SampledController:
-    """Task PD with an E that acts through the base's deflection. Raises numpy.linalg.LinAlgError where E = Ms."""
+    """Task PD with an E that acts through the base's deflection. Raises Unsolvable where E = Ms."""
     eye = np.eye(len(E))
-    gain = np.linalg.inv(eye - E @ np.linalg.inv(arm_on_free_base(pose)))
+    gain = inverse(eye - E @ np.linalg.inv(arm_on_free_base(pose)), FREE)
     law = static(np.hstack([gain, gain - eye]), sensing.step)
     system = series(signals(pose, sensing, gains), law)
     return SampledController("deflection", pose, sensing, system, None, {"gain": E.tolist()})
@@ -118,7 +119,7 @@ def search(pose: Pose, sensing: Sensing, gains: Gains) -> tuple[Callable[[Array]
     per_E = np.linalg.inv(Ms)
 
     def look(x: Array) -> Landscape:
-        gain = np.linalg.inv(eye - np.tensordot(x, basis, 1) @ per_E)
+        gain = inverse(eye - np.tensordot(x, basis, 1) @ per_E, FREE)
         slopes = gain @ basis @ (per_E @ gain)
         return landscape(loop, np.hstack([gain, gain - eye]), np.concatenate([slopes, slopes], axis=2))
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from flexbase.checks import Array, positive_number
-from flexbase.errors import Infeasible
+from flexbase.errors import Infeasible, Unsolvable
 from flexbase.linear.discrete import riccati
 from flexbase.linear.discrete.system import Discrete
 from flexbase.model.sensing import Sensing
@@ -45,7 +45,7 @@ def lqg(pose: Pose, sensing: Sensing, gains: Gains, *, noise: float = NOISE) -> 
     judged[k : 2 * k] = 0.0  # the task wants the tip at rest, and the self-motion; joints only inform
     try:
         found = regulator(plant, judged.T @ judged, np.eye(n), noise * np.eye(len(plant.C)))
-    except np.linalg.LinAlgError as fault:
+    except Unsolvable as fault:
         raise Infeasible(f"{pose.plant.name}: LQG has no stabilising solution at this pose ({fault}).") from fault
     notes = {"noise": noise, "joint_weight": JOINT_WEIGHT, "order": plant.order}
     return SampledController("lqg", pose, sensing, shape.unfold(observer(plant, found)), None, notes)

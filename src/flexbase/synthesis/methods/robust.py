@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from flexbase.errors import Unsolvable
 from flexbase.linear.discrete.coprime import coprime_controller
 from flexbase.linear.discrete.system import Discrete
 from flexbase.model.sensing import Sensing
@@ -89,7 +90,7 @@ def robust(
         shape = task_shape(there, gains, scale, joints, weight.sampled(sensing.step))
         try:
             central, b_opt = coprime_controller(shape.around(plant), FACTOR)
-        except np.linalg.LinAlgError:
+        except Unsolvable:
             return None
         notes = {"b_opt": b_opt, "scale": scale, "joint_weight": joints, "base_stiffness_factor": base}
         return _trial(robots, shape.unfold(central), weight, notes)
@@ -122,7 +123,7 @@ def _servos(robots: Robots, gains: Gains, margin: float, weight: Weight, slow: S
     for scale in SIZES:
         try:
             system, b_opt = joint_servo(pose, sensing, gains, scale, weight.sampled(sensing.step), slow)
-        except np.linalg.LinAlgError:
+        except Unsolvable:
             continue
         notes = {"b_opt": b_opt, "scale": scale, "tip_speed_rad_s": slow.speed if slow else 0.0}
         tried.append(_trial(robots, system, weight, notes))

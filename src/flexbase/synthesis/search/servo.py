@@ -53,7 +53,7 @@ def joint_servo(
 
     weight : on every joint, a scalar system; the controller has its states twice, and delay + 2, for each joint
     slow : two states more for each task row; None: the tip error is not heard
-    Raises numpy.linalg.LinAlgError where the loop shaping has no solution.
+    Raises Unsolvable where the loop shaping has no solution.
     """
     n, k, m = pose.arm.n, pose.arm.k, pose.arm.m
     inertia, Jv = floating_inertia(pose), pose.J[:, m:]
