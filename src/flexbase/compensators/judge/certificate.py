@@ -41,7 +41,8 @@ def certify(
     target_residual : how far the method's own equations are from holding; None if the gain was not designed here
     gains : for the closed loop; the project's own if left out
     cautions : the method's own; they take the place of the general one about missed targets
-    Cautions when the algebraic loop does not bear a common delay. Raises Infeasible where M - E > 0 is lost in rounding.
+    Cautions when the algebraic loop does not bear a common delay.
+    Raises Infeasible where M - E > 0 is lost to rounding.
     """
     E = check_symmetric("E", finite_array("E", E), "")
     gains = loop_on(pose.arm, Loop(gains=gains)).given_gains
