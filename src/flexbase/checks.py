@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
+from inspect import Parameter, signature
 from numbers import Integral, Real
 from types import UnionType
 from typing import Any, TypeVar, Union, get_args, get_origin
@@ -11,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flexbase.errors import InputError, Unsolvable, nearest_name
-from flexbase.requests import options_of
+from flexbase.requests import Option, options_of
 
 Array = NDArray[np.float64]
 Choice = TypeVar("Choice")
@@ -147,13 +148,30 @@ def check_request(name: str, request: object, kind: type) -> None:
     """
     if not isinstance(request, kind):
         raise InputError(f"{name}: {type(request).__name__} given. Give a {kind.__name__}, such as {kind.__name__}().")
-    for one in options_of(kind):
-        value = getattr(request, one.name)
+    _check_values(options_of(kind), vars(request))
+
+
+def check_options(method: str, run: Callable[..., object], given: Mapping[str, object]) -> None:
+    """Raises InputError for an option that a method does not have, or another kind of value or choice than it says.
+
+    Options are what a function takes by keyword only, but for its `loop`.
+    """
+    parameters = signature(run).parameters.values()
+    known = [one.name for one in parameters if one.kind is Parameter.KEYWORD_ONLY and one.name != "loop"]
+    for name in given:
+        if name not in known:
+            raise InputError(f'method {method}: the option "{name}" is unknown. {nearest_name(name, known)}')
+    _check_values((one for one in options_of(run) if one.name in given), given)
+
+
+def _check_values(options: Iterable[Option], given: Mapping[str, object]) -> None:
+    for one in options:
+        value = given[one.name]
         if not _is_of(one.kind, value):
             wanted = getattr(one.kind, "__name__", str(one.kind))
             raise InputError(f"{one.name}: {value!r} is not {WORDS.get(one.kind, wanted)}. Give {one.text}.")
         if one.choices and value is not None:
-            choose(one.name, value, dict.fromkeys(one.choices))
+            choose(one.name, str(value), dict.fromkeys(one.choices))
 
 
 def _is_of(kind: Any, value: object) -> bool:
@@ -162,7 +180,7 @@ def _is_of(kind: Any, value: object) -> bool:
         return any(_is_of(one, value) for one in get_args(kind))
     if get_origin(kind) is tuple:
         kinds = get_args(kind)
-        if not isinstance(value, tuple | list):
+        if not (isinstance(value, tuple | list) or (isinstance(value, np.ndarray) and value.ndim == 1)):
             return False
         each = kinds[:1] * len(value) if kinds[1:] == (...,) else kinds
         return len(each) == len(value) and all(map(_is_of, each, value))

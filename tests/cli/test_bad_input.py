@@ -41,7 +41,7 @@ COMMAND_LINES = {
     "a folder": (("check", "."), ("not a file",)),
     "method": (("design", "ueda2003", *AT, "--method", "exakt"), ("exakt", '"exact"')),
     "foreign option": (("design", "ueda2003", *AT, "--method", "exact", "--step", "0.1"), ("exact", '"step"')),
-    "objective": (("design", "ueda2003", *AT, "--objective", "least"), ("least-gain", "least-radius")),
+    "objective": (("design", "ueda2003", *AT, "--objective", "best"), ("least-gain", "least-radius")),
     "frequency": (("design", "ueda2003", *AT, "--natural-frequency", "-5"), ("-5",)),
     "iterations": (("design", "ueda2003", *AT, "--iterations", "1.5"), ("--iterations", "1.5")),
     "seed": (("design", "ueda2003", *AT, "--method", "recursive", "--seed", "-1"), ("--seed", "-1")),

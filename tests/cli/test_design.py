@@ -80,7 +80,7 @@ def test_task_priority_takes_one_frequency_a_mode(call: Call, tmp_path: Path) ->
     )  # 0.98^200 of the way left
     wrong = call(*AT, *words, "--natural-frequency", "330,340")
     assert (wrong.status, wrong.out) == (2, "")
-    assert "2 numbers given, 1 needed" in wrong.err
+    assert "2 values given, 1 needed" in wrong.err
 
 
 def test_smaller_loop_radius_by_its_objective(call: Call) -> None:

@@ -59,7 +59,8 @@ SHOWN = {
     "--rate --task-every --task-rate --compute-delay --task-delay --encoder-counts --acceleration --accelerometer-lag "
     "--acceleration-filter --acceleration-noise --task-noise --torque-limit --torque-slew --resume --out --json",
     "simulate": "--from --to --elbow --branch --compensator --switch --end --trajectory --compensate --interval "
-    "--self-motion --plant --sampled --method --disturb --rate --task-every --task-rate --compute-delay --task-delay "
+    "--self-motion --plant --sampled --method --disturb --free --softest --most --margin --scales --scale --order "
+    "--noise --rate --task-every --task-rate --compute-delay --task-delay "
     "--encoder-counts --acceleration --accelerometer-lag --acceleration-filter --acceleration-noise --task-noise "
     "--torque-limit --torque-slew --stiffness --damping --out --json",
     "ellipsoid": "--tip --joints --elbow --branch --compensator --convention --out --json",

@@ -166,7 +166,7 @@ def bolted() -> fb.Pose:
     return fb.Plant(replace(arm, gains=Gains(1e4 * np.eye(2), 200.0 * np.eye(2)))).at([0.4, 0.9])
 
 
-SHAPE_THE_BASE = ("recursion", "exact", "convex", "deflection", "notch")
+SHAPE_THE_BASE = ("recursive", "exact", "convex", "deflection", "notch")
 
 
 @pytest.mark.parametrize("method", SHAPE_THE_BASE)

@@ -82,6 +82,11 @@ class LoopSpec:
         """E, or zero where there is none, shape (n, n)."""
         return np.zeros((self.arm.n, self.arm.n)) if self.E is None else self.E
 
+    def check_bare(self) -> None:
+        """Raises InputError where there is a compensator: a method that is asked for one brings its own."""
+        if self.E is not None:
+            raise InputError("method: a compensator is given too, and a method brings its own. Give one of them.")
+
     def scaled(self, scale: float) -> Gains:
         """Task gains (s Kp, sqrt(s) Kv): the same damping ratio at another stiffness. Raises InputError."""
         return Gains(scale * self.gains.stiffness, float(np.sqrt(scale)) * self.gains.damping)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from flexbase.errors import InputError
 from flexbase.model.loop import Asked, loop_on
 from flexbase.plant import Pose, check_pose
 from flexbase.sampled.controller import SampledController, pd_with_gain
@@ -23,6 +22,5 @@ def make_controller(pose: Pose, method: str | None = None, loop: Asked = None, *
     meant = loop_on(pose.arm, loop)
     if method is None and not options:
         return pd_with_gain(pose, meant.sensing, meant.gains, meant.E, meant.name)
-    if meant.E is not None:
-        raise InputError("method: a compensator is given too, and a method brings its own. Give one of them.")
+    meant.check_bare()
     return controller_for(pose, method or "none", meant.sensing, meant.gains, **options)

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
-from flexbase.checks import choose
+from flexbase.checks import check_options, choose
 from flexbase.model.loop import Loop, loop_on
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose, check_pose
+from flexbase.requests import Option, Says, options_of
 from flexbase.sampled.controller import SampledController
 
+Margin = Annotated[float, Says("disk margin that is asked for", written="A")]
 Make = Callable[..., SampledController]  # (pose, sensing, gains, **options)
 
 
@@ -29,6 +31,11 @@ class HardwareMethod(NamedTuple):
     as_given: Mapping[str, Any]
     law: str
 
+    @property
+    def options(self) -> tuple[Option, ...]:
+        """What its signature says about its options."""
+        return options_of(self.make)
+
 
 HARDWARE_METHODS: dict[str, HardwareMethod] = {}
 
@@ -36,7 +43,7 @@ HARDWARE_METHODS: dict[str, HardwareMethod] = {}
 def hardware_method(
     name: str, purpose: str, *, as_given: Mapping[str, Any] | None = None, law: str = "controller"
 ) -> Callable[[Make], Make]:
-    """Register a maker under a name."""
+    """Register a maker under a name; options that a person may give are annotated with `Says`."""
 
     def register(make: Make) -> Make:
         HARDWARE_METHODS[name] = HardwareMethod(name, purpose, make, as_given or {}, law)
@@ -57,4 +64,5 @@ def controller_for(
     chosen = choose("method", method, HARDWARE_METHODS)
     check_pose(pose)
     loop = loop_on(pose.arm, Loop(gains=gains, sensing=sensing))
+    check_options(method, chosen.make, options)
     return chosen.make(pose, loop.sensing, loop.gains, **options)

@@ -7,6 +7,7 @@ from typing import Annotated
 from cyclopts import App, Parameter
 
 from flexbase.cli.options.common import Json
+from flexbase.cli.options.from_request import options_given
 from flexbase.cli.options.gains import GainOptions
 from flexbase.cli.options.method import MethodOptions
 from flexbase.cli.options.pose import PoseOptions, Robot
@@ -55,7 +56,7 @@ def design(
     gains, sensing = loop.gains(plant), run.sensing(plant) if run.declared(plant) else None
     try:
         at = pose.pose(plant)
-        found = design_at(at, by.method, **by.given(plant), **({} if gains is None else {"gains": gains}))
+        found = design_at(at, by.method, Loop(gains=gains), **options_given(by))
     except Infeasible as reason:
         if not json:
             raise

@@ -8,6 +8,7 @@ from typing import Annotated
 from cyclopts import Group, Parameter
 
 from flexbase.cli.options.common import option
+from flexbase.cli.options.from_request import from_methods, options_given
 from flexbase.cli.options.move import as_sampled
 from flexbase.cli.options.sensing import SensingOptions
 from flexbase.cli.options.words import Vector, numbers
@@ -22,7 +23,7 @@ PUSH = 0.02  # s
 SAMPLED = Group("Sampled", sort_key=15)
 
 
-@Parameter(name="*", group=SAMPLED)
+@from_methods(SAMPLED, HARDWARE_METHODS)
 @dataclass(frozen=True)
 class SampledOptions:
     """The loop as it runs, by the project's [sensing] table or 1 kHz with one sample of delay."""
@@ -37,8 +38,9 @@ class SampledOptions:
 
     def asked(self, senses: SensingOptions) -> bool:
         """Whether the loop is sampled. Raises InputError for options that mean nothing without it."""
-        words = {"method": self.method, "disturb": self.disturb, **vars(senses)}
-        given = [name for name, value in words.items() if value is not None]
+        given = [
+            name for name, value in {**vars(self), **vars(senses)}.items() if not (value is None or value is False)
+        ]
         if given and not self.sampled:
             raise InputError(f"--{given[0].replace('_', '-')}: says how a sampled loop runs. Give --sampled with it.")
         return self.sampled
@@ -49,5 +51,6 @@ class SampledOptions:
         push = None if self.disturb is None else Push(self.disturb, 0.5 * (times.switch + times.end), PUSH)
         if loop.compensator is not None and self.method is not None:
             raise InputError("--method and --compensator are both given. Give one of them.")
-        controller = make_controller(goal, self.method, replace(loop, sensing=senses.sensing(goal.plant)))
+        meant = replace(loop, sensing=senses.sensing(goal.plant))
+        controller = make_controller(goal, self.method, meant, **options_given(self))
         return simulate_sampled(controller, start, push=push, move=times)

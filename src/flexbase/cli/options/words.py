@@ -35,6 +35,12 @@ def numbers(text: str, option: str) -> Vector:
     return tuple(number(part.strip(), option) for part in _parts(text, option))
 
 
+def number_or_numbers(text: str, option: str) -> float | Vector:
+    """One number, or several with commas between them. Raises InputError."""
+    found = numbers(text, option)
+    return found[0] if len(found) == 1 else found
+
+
 def counts(text: str, option: str) -> tuple[int, ...]:
     """Whole numbers with commas between them. Raises InputError."""
     return tuple(whole(part.strip(), option) for part in _parts(text, option))

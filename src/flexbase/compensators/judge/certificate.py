@@ -18,8 +18,7 @@ from flexbase.linear.margins import (
     lag_margin,
 )
 from flexbase.linear.modal import modes
-from flexbase.model.loop import Gain, Loop, loop_on
-from flexbase.model.task import Gains
+from flexbase.model.loop import Asked, Gain, loop_on
 from flexbase.plant import Pose
 
 NEARLY_SINGULAR = 0.01  # lambda_min(M - E) over that of M
@@ -32,20 +31,20 @@ def certify(
     E: Array,
     *,
     target_residual: float | None = None,
-    gains: Gains | None = None,
+    loop: Asked = None,
     history: dict[str, Array] | None = None,
     cautions: tuple[str, ...] = (),
 ) -> Compensator:
     """A compensator with its certificate at `pose`. Assumes M - E > 0.
 
     target_residual : how far the method's own equations are from holding; None if the gain was not designed here
-    gains : for the closed loop; the project's own if left out
+    loop : whose task gains close it; the project's own if left out
     cautions : the method's own; they take the place of the general one about missed targets
     Cautions when the algebraic loop does not bear a common delay.
     Raises Infeasible where M - E > 0 is lost to rounding.
     """
     E = check_symmetric("E", finite_array("E", E), "")
-    gains = loop_on(pose.arm, Loop(gains=gains)).given_gains
+    gains = loop_on(pose.arm, loop).given_gains
     if not is_definite(modified_inertia(pose, E), pose.M):
         raise Infeasible(f"{method}: what meets the targets leaves M - E no inertia in some direction. Ask for less.")
     before, after = modes(pose).modes, modes(pose, Gain(E)).modes

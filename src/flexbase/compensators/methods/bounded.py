@@ -9,13 +9,14 @@ from flexbase.compensators.choice import least_lacking
 from flexbase.compensators.judge.certificate import certify
 from flexbase.compensators.judge.implementable import RADIUS, BoundedGain, checked_radius
 from flexbase.compensators.judge.shortage import cautions_of_shortage, target_residual
+from flexbase.compensators.options import Radius, Seed
 from flexbase.compensators.registry import method
 from flexbase.compensators.search.descent import descend, shortage_and_slope
 from flexbase.compensators.search.least_misalignment import MARGIN, least_misalignment
 from flexbase.compensators.search.mobility_program import MobilityProgram
 from flexbase.control.compensator import Compensator
 from flexbase.errors import Infeasible, InputError, MissingExtra
-from flexbase.model.task import Gains
+from flexbase.model.loop import Asked
 from flexbase.plant import Pose
 
 SPREAD = 0.5  # of the random start's entries
@@ -25,9 +26,9 @@ SPREAD = 0.5  # of the random start's entries
 def bounded(
     pose: Pose,
     *,
-    radius: float = RADIUS,
-    seed: int = 0,
-    gains: Gains | None = None,
+    radius: Radius = RADIUS,
+    seed: Seed = 0,
+    loop: Asked = None,
 ) -> Compensator:
     """Least -sum_i w_i / (4 zeta_i omega_i) over all gains with rho(Ms^-1 E) < radius.  [theory §7]
 
@@ -42,12 +43,12 @@ def bounded(
     g = checked_radius(radius)
     none = np.zeros((pose.arm.n, pose.arm.n))
     if shortage_and_slope(pose, none)[0] == 0.0:
-        return certify(pose, "bounded", none, target_residual=0.0, gains=gains)
+        return certify(pose, "bounded", none, target_residual=0.0, loop=loop)
     random = SPREAD * np.random.default_rng(seed).standard_normal(none.shape)
     starts = [none, BoundedGain(pose, g).at(0.5 * (random + random.T))[0], *_convex_start(pose, g)]
     E = least_lacking(pose, [descend(pose, g, start)[1] for start in starts])
     missing, cautions = target_residual(pose, E), cautions_of_shortage(pose, E)
-    return certify(pose, "bounded", E, target_residual=missing, gains=gains, cautions=cautions)
+    return certify(pose, "bounded", E, target_residual=missing, loop=loop, cautions=cautions)
 
 
 def _convex_start(pose: Pose, radius: float) -> list[Array]:

@@ -8,6 +8,8 @@ one beta has no solution each mode may have its own.
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 
 from flexbase.checks import Array, positive_number
@@ -18,6 +20,7 @@ from flexbase.compensators.judge.lag_law import SHARE as SHARE_OF_DAMPING
 from flexbase.compensators.judge.lag_law import LagLaw, check_obeyed, checked_law, obeys
 from flexbase.compensators.judge.refusals import aligned, aligned_each, check_frequencies, what_binds
 from flexbase.compensators.judge.shortage import cautions_of_shortage, target_residual
+from flexbase.compensators.options import Lag, LagShare, Radius
 from flexbase.compensators.registry import method
 from flexbase.compensators.search.descent import descend, shortage_and_slope
 from flexbase.compensators.search.least_misalignment import MARGIN, least_misalignment
@@ -26,8 +29,9 @@ from flexbase.compensators.search.one_beta import one_beta
 from flexbase.compensators.search.two_modes import TwoModes
 from flexbase.control.compensator import Compensator
 from flexbase.errors import Infeasible, InputError
-from flexbase.model.task import Gains
+from flexbase.model.loop import Asked
 from flexbase.plant import Pose
+from flexbase.requests import Says
 
 OBJECTIVES = ("aligned", "mode-by-mode", "least-misaligned")
 SOLVABLE = 1e-9  # relative residual of V = beta Jp up to which the equation counts as solvable
@@ -37,14 +41,14 @@ SOLVABLE = 1e-9  # relative residual of V = beta Jp up to which the equation cou
 def convex(
     pose: Pose,
     *,
-    natural_frequency: float | None = None,
-    highest_frequency: float | None = None,
-    radius: float = RADIUS,
-    margin: float = MARGIN,
-    objective: str | None = None,
-    lag: float | None = None,
-    lag_share: float = SHARE_OF_DAMPING,
-    gains: Gains | None = None,
+    natural_frequency: Annotated[float | None, Says("lower bound of all modes", unit="rad/s", written="W")] = None,
+    highest_frequency: Annotated[float | None, Says("upper bound of all modes", unit="rad/s", written="W")] = None,
+    radius: Radius = RADIUS,
+    margin: Annotated[float, Says("distance of beta from 0 and 1", written="B")] = MARGIN,
+    objective: Annotated[str | None, Says("what is reached", choices=OBJECTIVES)] = None,
+    lag: Lag = None,
+    lag_share: LagShare = SHARE_OF_DAMPING,
+    loop: Asked = None,
 ) -> Compensator:
     """Least change of the arm's mobility that makes the plant positive real, under rho(Ms^-1 E) <= radius.  [theory §7]
 
@@ -66,8 +70,6 @@ def convex(
     """
     if pose.arm.m == 0:
         raise InputError("convex: the base is rigid, so there is no mode to shape.")
-    if objective not in (None, *OBJECTIVES):
-        raise InputError(f'objective: "{objective}" is unknown. Give one of {", ".join(OBJECTIVES)}.')
     if objective == "mode-by-mode" and pose.arm.m != 2:
         raise InputError(
             f"objective: mode-by-mode is for two base joints, {pose.arm.m} given. Ask for another, or leave it out."
@@ -86,14 +88,14 @@ def convex(
     check_frequencies(program)
     E = one_beta(program, law, margin) if solvable and objective != "least-misaligned" else None
     if E is not None:
-        return certify(pose, "convex", E, target_residual=program.residual(E), gains=gains)
+        return certify(pose, "convex", E, target_residual=program.residual(E), loop=loop)
     if objective == "aligned" and not still:
         raise Infeasible(what_binds(program, law, aligned))
     each = _mode_by_mode(program, law, margin, objective)
     E = _least_misaligned(program, law, margin) if each is None else each
     check_obeyed(law, pose, E)
     missing, cautions = target_residual(pose, E), cautions_of_shortage(pose, E)
-    return certify(pose, "convex", E, target_residual=missing, gains=gains, cautions=cautions)
+    return certify(pose, "convex", E, target_residual=missing, loop=loop, cautions=cautions)
 
 
 def _bounds(m: int, lowest: float | None, highest: float | None) -> tuple[float | None, float | None]:

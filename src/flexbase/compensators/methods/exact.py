@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from flexbase.checks import Array, positive_number
 from flexbase.compensators.judge.certificate import certify
 from flexbase.compensators.judge.lag_law import SHARE, LagLaw, check_obeyed, checked_law, fastest, words
 from flexbase.compensators.methods.exact_redundant import freest, lagged_bands, within
+from flexbase.compensators.options import Lag, LagShare, Wanted
 from flexbase.compensators.registry import method
 from flexbase.control.compensator import Compensator
 from flexbase.errors import Infeasible, InputError
@@ -18,8 +19,9 @@ from flexbase.linear.margins import arm_on_free_base
 from flexbase.linear.modal import modes
 from flexbase.measures.compensability import coupling
 from flexbase.measures.exact_design import CLEARANCE, RAISE
-from flexbase.model.task import Gains
+from flexbase.model.loop import Asked
 from flexbase.plant import Pose
+from flexbase.requests import Says
 
 OBJECTIVES = ("least-gain", "least-radius")
 STILL = 1e-12  # of the Jacobian, up to which the base does not move the tip
@@ -59,11 +61,11 @@ def compensability(pose: Pose) -> Compensability:
 def exact(
     pose: Pose,
     *,
-    natural_frequency: float | None = None,
-    objective: str = "least-gain",
-    lag: float | None = None,
-    lag_share: float = SHARE,
-    gains: Gains | None = None,
+    natural_frequency: Wanted = None,
+    objective: Annotated[str, Says("what is least", choices=OBJECTIVES)] = "least-gain",
+    lag: Lag = None,
+    lag_share: LagShare = SHARE,
+    loop: Asked = None,
 ) -> Compensator:
     """Gain that aligns the one base mode, w = 0, at a chosen natural frequency.  [theory §7]
 
@@ -77,8 +79,6 @@ def exact(
         delay law of theory §8; it bounds the reachable frequencies from above. Left out: no such constraint
     Raises Infeasible if no gain exists, or none at this frequency: the message says which, and what does exist.
     """
-    if objective not in OBJECTIVES:
-        raise InputError(f'objective: "{objective}" is unknown. Give one of {", ".join(OBJECTIVES)}.')
     law = checked_law(lag, lag_share)
     facts, frequency = (_redundant if pose.arm.n > pose.arm.k else _square)(pose, natural_frequency, law)
     alpha = _alpha(pose, facts, frequency)
@@ -89,7 +89,7 @@ def exact(
     check_obeyed(law, pose, E)
     residual = (pose.M[1:, 1:] - E) @ facts.z - facts.y / alpha
     relative = float(np.linalg.norm(residual) / np.linalg.norm(facts.y / alpha))
-    return certify(pose, "exact", E, target_residual=relative, gains=gains)
+    return certify(pose, "exact", E, target_residual=relative, loop=loop)
 
 
 def reachable(pose: Pose, lag: float | None = None, lag_share: float = SHARE) -> tuple[float, float]:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from flexbase.checks import positive_number
+from flexbase.compensators.options import Iterations, Seed, Slopes, Step, Wanted
 from flexbase.compensators.registry import method
 from flexbase.compensators.search.recursion import ITERATIONS, STEP, shape_recursively
 from flexbase.control.compensator import Compensator
 from flexbase.errors import InputError
-from flexbase.model.task import Gains
+from flexbase.model.loop import Asked
 from flexbase.plant import Pose
 
 
@@ -15,12 +16,12 @@ from flexbase.plant import Pose
 def recursive(
     pose: Pose,
     *,
-    natural_frequency: float | None = None,
-    step: float = STEP,
-    iterations: int = ITERATIONS,
-    derivatives: str = "estimated",
-    seed: int = 0,
-    gains: Gains | None = None,
+    natural_frequency: Wanted = None,
+    step: Step = STEP,
+    iterations: Iterations = ITERATIONS,
+    derivatives: Slopes = "estimated",
+    seed: Seed = 0,
+    loop: Asked = None,
 ) -> Compensator:
     """Step phi = [w_1, omega_1] towards [0, natural_frequency] from E = 0.  [U03 eq 12-16]
 
@@ -45,5 +46,5 @@ def recursive(
         iterations=iterations,
         derivatives=derivatives,
         seed=seed,
-        gains=gains,
+        loop=loop,
     )

@@ -2,25 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from typing import Annotated
 
+from flexbase.compensators.options import Iterations, Seed, Slopes, Step
 from flexbase.compensators.registry import method
 from flexbase.compensators.search.recursion import ITERATIONS, STEP, shape_recursively
 from flexbase.control.compensator import Compensator
-from flexbase.model.task import Gains
+from flexbase.model.loop import Asked
 from flexbase.plant import Pose
+from flexbase.requests import Says
 
 
 @method("task-priority", "any number of base joints: the recursion, slowest mode first, the next in its null space")
 def task_priority(
     pose: Pose,
     *,
-    natural_frequency: Sequence[float] | float | None = None,
-    step: float = STEP,
-    iterations: int = ITERATIONS,
-    derivatives: str = "exact",
-    seed: int = 0,
-    gains: Gains | None = None,
+    natural_frequency: Annotated[
+        tuple[float, ...] | float | None, Says("wanted of each mode, slowest first", unit="rad/s", written="W,W")
+    ] = None,
+    step: Step = STEP,
+    iterations: Iterations = ITERATIONS,
+    derivatives: Slopes = "exact",
+    seed: Seed = 0,
+    loop: Asked = None,
 ) -> Compensator:
     """Step every [w_i, omega_i] towards [0, target i] from E = 0, earlier modes taking priority.  [Y01, U03 §III B]
 
@@ -32,14 +36,13 @@ def task_priority(
     step, iterations, derivatives, seed : as for `recursive`
     Raises Infeasible if M - E stops being positive definite on the way.
     """
-    targets = [natural_frequency] if isinstance(natural_frequency, int | float) else natural_frequency
     return shape_recursively(
         pose,
         "task-priority",
-        targets,
+        natural_frequency,
         step=step,
         iterations=iterations,
         derivatives=derivatives,
         seed=seed,
-        gains=gains,
+        loop=loop,
     )

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
+from numpy.typing import ArrayLike
 
 from flexbase.checks import Array, check_length
 from flexbase.compensators.judge.certificate import certify
@@ -18,7 +17,7 @@ from flexbase.compensators.search.mode_parameters import (
 from flexbase.control.compensator import Compensator
 from flexbase.errors import Infeasible, InputError
 from flexbase.linear.linearise import modified_inertia
-from flexbase.model.task import Gains
+from flexbase.model.loop import Asked
 from flexbase.plant import Pose
 
 STEP = 0.02  # g1 of the paper's example
@@ -35,19 +34,19 @@ HALVINGS = 30  # of a step that would leave M - E > 0
 def shape_recursively(
     pose: Pose,
     method: str,
-    natural_frequencies: Sequence[float] | None,
+    natural_frequencies: ArrayLike | None,
     *,
     step: float,
     iterations: int,
     derivatives: str,
     seed: int,
-    gains: Gains | None,
+    loop: Asked,
 ) -> Compensator:
     """Drive [w_i, omega_i] towards [0, target] by repeated small steps in E, from E = 0; earlier modes take priority.
 
     Raises Infeasible, with the iteration, if M - E stops being positive definite or the first mode ends far off.
     """
-    _check_options(pose, method, step, iterations, derivatives, seed)
+    _check_options(pose, method, step, iterations, seed)
     now = first = mode_parameters(pose, np.zeros((pose.arm.n, pose.arm.n)))
     targets = np.zeros_like(now.values)
     targets[:, 1] = (RAISE if pose.arm.m == 1 else RAISE_SEVERAL) * now.values[:, 1]
@@ -75,10 +74,10 @@ def shape_recursively(
             f"{missed[0]:.0%}. Ask for other natural frequencies or another pose."
         )
     history = dict(zip(("robustness", "frequency_rad_s", "min_eig_modified_inertia"), np.array(track).T, strict=True))
-    return certify(pose, method, E, target_residual=float(missed.max()), gains=gains, history=history)
+    return certify(pose, method, E, target_residual=float(missed.max()), loop=loop, history=history)
 
 
-def _check_options(pose: Pose, method: str, step: float, iterations: int, derivatives: str, seed: int) -> None:
+def _check_options(pose: Pose, method: str, step: float, iterations: int, seed: int) -> None:
     if pose.arm.m == 0:
         raise InputError(f"{method}: the base is rigid, so there is no mode to shape.")
     if not 0.0 < step <= 1.0:
@@ -87,8 +86,6 @@ def _check_options(pose: Pose, method: str, step: float, iterations: int, deriva
         raise InputError(f"seed: {seed} must be 0 or more.")
     if iterations < 1:
         raise InputError(f"iterations: {iterations} must be 1 or more. The paper uses {ITERATIONS}.")
-    if derivatives not in ("estimated", "exact"):
-        raise InputError(f'derivatives: "{derivatives}" is unknown. Give "estimated" (as the paper) or "exact".')
 
 
 def _estimate(pose: Pose, E: Array, now: ModeParameters, H: Array, rng: np.random.Generator) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.stats import spearmanr
@@ -132,7 +133,7 @@ def ellipse_field(
     return EllipseField(tuple(cells))
 
 
-def _designed(pose: Pose, method: str, frequency: float, **options: str) -> tuple[Array | None, str]:
+def _designed(pose: Pose, method: str, frequency: float, **options: Any) -> tuple[Array | None, str]:
     """E, or None, and a status."""
     try:
         with collected(quietly=True):

@@ -25,10 +25,10 @@ def none(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
     return pd_with_gain(pose, sensing, gains, None, "none")
 
 
-@hardware_method("recursion", "the paper's 800 iterations on measured accelerations", law="gains")
-def recursion(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
+@hardware_method("recursive", "the paper's 800 iterations on measured accelerations", law="gains")
+def recursive_gain(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
     """Task PD with the recursion's E. Raises Infeasible where it does not converge."""
-    return pd_with_gain(pose, sensing, gains, _recursion_gain(pose), "recursion")
+    return pd_with_gain(pose, sensing, gains, _recursive_gain(pose), "recursive")
 
 
 @hardware_method("exact", "the exact least gain on measured accelerations", law="gains")
@@ -51,7 +51,7 @@ def _convex_gain(pose: Pose) -> Array:
 
 
 @lru_cache(maxsize=8)
-def _recursion_gain(pose: Pose) -> Array:
+def _recursive_gain(pose: Pose) -> Array:
     """E depends on the pose alone, and studies ask for it at several rates."""
     return recursive(pose, natural_frequency=_wanted(pose)).E
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
+from typing import Annotated
 
 import numpy as np
 
@@ -12,10 +12,11 @@ from flexbase.errors import Infeasible, InputError
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
+from flexbase.requests import Says
 from flexbase.sampled.controller import SampledController
 from flexbase.sampled.judged import GOOD_MARGIN, judged
 from flexbase.synthesis.methods.sampled import MATRICES, SampledProblem
-from flexbase.synthesis.registry import hardware_method
+from flexbase.synthesis.registry import Margin, hardware_method
 from flexbase.synthesis.search.minimax import Found, descend
 
 SCALES = (1.0, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125)  # of the task stiffness, tried from the first
@@ -33,9 +34,9 @@ def constant(
     sensing: Sensing,
     gains: Gains,
     *,
-    margin: float = GOOD_MARGIN,
-    scales: Sequence[float] = SCALES,
-    most: int = 80,
+    margin: Margin = GOOD_MARGIN,
+    scales: Annotated[tuple[float, ...], Says("of the task stiffness, tried in turn", written="G,G")] = SCALES,
+    most: Annotated[int, Says("looks in a descent")] = 80,
 ) -> SampledController:
     """Task stiffness, and full matrices on tip rate, joint rate and acceleration; the stiffest accepted of `scales`.
 

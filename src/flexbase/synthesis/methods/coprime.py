@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 from flexbase.errors import Infeasible, Unsolvable
 from flexbase.linear.discrete.coprime import coprime_controller
 from flexbase.linear.discrete.system import spectral_radius
@@ -9,9 +11,10 @@ from flexbase.linear.discrete.tustin import balanced_truncation
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
+from flexbase.requests import Says
 from flexbase.sampled.controller import SampledController
 from flexbase.sampled.judged import GOOD_MARGIN, Judged, robots_at
-from flexbase.synthesis.registry import hardware_method
+from flexbase.synthesis.registry import Margin, hardware_method
 from flexbase.synthesis.search.shaping import design_plant, task_shape
 from flexbase.synthesis.search.stiffest import best_of, stiffest
 
@@ -25,9 +28,9 @@ def coprime(
     sensing: Sensing,
     gains: Gains,
     *,
-    scale: float | None = None,
-    margin: float = GOOD_MARGIN,
-    order: int | None = None,
+    scale: Annotated[float | None, Says("of the task stiffness; searched if left out", written="G")] = None,
+    margin: Margin = GOOD_MARGIN,
+    order: Annotated[int | None, Says("states after truncation; all if left out")] = None,
 ) -> SampledController:
     """The stiffest accepted of central controllers of the normalised coprime factors; `notes` reports b_opt.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
@@ -13,12 +13,15 @@ from flexbase.linear.discrete.system import Discrete
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
+from flexbase.requests import Says
 from flexbase.sampled.controller import SampledController
 from flexbase.synthesis.registry import hardware_method
 from flexbase.synthesis.search.shaping import design_plant, task_shape
 
 JOINT_WEIGHT = 0.5  # of the joints beside the tip error, as in loop shaping
 NOISE = 0.01  # variance of the measurements over that of the force disturbance, both weighted by Kp
+
+Noise = Annotated[float, Says("variance of the measurements over that of the force")]
 
 
 class Regulator(NamedTuple):
@@ -29,7 +32,7 @@ class Regulator(NamedTuple):
 
 
 @hardware_method("lqg", "the textbook optimum; stiff and noisy, with little margin at the sensors")
-def lqg(pose: Pose, sensing: Sensing, gains: Gains, *, noise: float = NOISE) -> SampledController:
+def lqg(pose: Pose, sensing: Sensing, gains: Gains, *, noise: Noise = NOISE) -> SampledController:
     """Least mean of e^T Kp e + f^T Kp^-1 f under white force disturbance, tau = Jv^T f, on the sampled plant.
 
     The disturbance has covariance Kp and enters where the force does; the measurements of e and of half of Jv dq_a have

@@ -24,7 +24,7 @@ from flexbase.plant import Pose
 from flexbase.sampled.changes import Changed, changed_pose
 from flexbase.sampled.controller import SampledController
 from flexbase.sampled.judged import GOOD_MARGIN, Judged, Robots, robots_at
-from flexbase.synthesis.registry import hardware_method
+from flexbase.synthesis.registry import Margin, hardware_method
 from flexbase.synthesis.search.servo import Slow, joint_servo
 from flexbase.synthesis.search.shaping import Weight, design_plant, task_shape
 from flexbase.synthesis.search.stiffest import best_of, stiffest
@@ -65,7 +65,7 @@ HALVINGS = 3
 
 @hardware_method("robust", "a joint servo and a slow loop of the tip: holds changed robots; needs no accelerometer")
 def robust(
-    pose: Pose, sensing: Sensing, gains: Gains, *, margin: float = GOOD_MARGIN, stages: Sequence[Stage] = STAGES
+    pose: Pose, sensing: Sensing, gains: Gains, *, margin: Margin = GOOD_MARGIN, stages: Sequence[Stage] = STAGES
 ) -> SampledController:
     """The stiffest accepted of servos of the joints, the tip around them, and of loop shaping of tip and joints.
 

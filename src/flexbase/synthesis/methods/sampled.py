@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from flexbase.linear.modal import modes
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
+from flexbase.requests import Says
 from flexbase.sampled.closed import plant_at_one_rate, plants_in_a_period
 from flexbase.sampled.controller import (
     SampledController,
@@ -52,10 +54,10 @@ def sampled(
     sensing: Sensing,
     gains: Gains,
     *,
-    free: Sequence[str] = ("E",),
-    softest: float = 0.3,
+    free: Annotated[tuple[str, ...], Says("of E, stiffness, damping, joint-damping, matrices")] = ("E",),
+    softest: Annotated[float, Says("lowest factor on the stiffness", written="G")] = 0.3,
     sensors: bool = True,
-    most: int = 60,
+    most: Annotated[int, Says("looks in a descent")] = 60,
 ) -> SampledController:
     """E, and where asked scales of the gains and joint damping, for the largest disk margin of the sampled loop.
 
@@ -259,7 +261,7 @@ def ideal_gain(pose: Pose) -> Array | None:
     """The implementable design for ideal acceleration that suits the base; None where there is none."""
     if pose.arm.m == 0:
         return None
-    tries: list[tuple[str, dict[str, float]]] = [("bounded", {}), ("convex", {"radius": RADIUS})]
+    tries: list[tuple[str, dict[str, Any]]] = [("bounded", {}), ("convex", {"radius": RADIUS})]
     if pose.arm.m == 1 and pose.arm.k == pose.arm.n:
         tries.insert(0, ("exact", {"natural_frequency": modes(pose)[0].frequency + 100.0}))
     for method, options in tries:
