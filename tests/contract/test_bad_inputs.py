@@ -92,6 +92,7 @@ VERBS: dict[str, Callable[[fb.Pose, Any], Any]] = {
     "modes": fb.modes,
     "verdict": fb.verdict,
     "linearise": fb.linearise,
+    "design": lambda pose, loop: fb.design(pose, loop=loop),
     "manipulability": fb.manipulability,
     "simulate": one_case,
     "simulate_many": lambda pose, loop: fb.simulate_many(pose.plant, pose, pose, loop),

@@ -83,7 +83,7 @@ from flexbase.sampled.controller import pd_with_gain
 from flexbase.synthesis.registry import hardware_method
 
 @method("part-of-the-arm", "a throw-away method")
-def part(pose, *, part: Annotated[float, Says("of the arm's own inertia", unit="1")] = 0.5, loop=None):
+def part(pose, *, part: Annotated[float, Says("of the arm's own inertia", unit="1")] = 0.1, loop=None):
     return certify(pose, "part-of-the-arm", part * np.diag(np.diag(pose.M[1:, 1:])), loop=loop)
 
 @hardware_method("damped", "a throw-away controller")
@@ -107,16 +107,28 @@ def test_a_new_method_brings_its_option_to_the_command_line(paper_pose: fb.Pose)
     """One function with one annotated option, registered before the program runs: in the help, and in the call."""
     shown = " ".join(program("design", "--help").replace("│", " ").split())
     assert "--part X" in shown
-    assert "part-of-the-arm: of the arm's own inertia [1], 0.5" in shown
-    for words, part in ((["--part", "0.25"], 0.25), ([], 0.5)):
+    assert "part-of-the-arm: of the arm's own inertia [1], 0.1" in shown
+    for words, part in ((["--part", "0.05"], 0.05), ([], 0.1)):
         answer = program("design", "ueda2003", "--tip", "0.33,-0.25", "--method", "part-of-the-arm", *words, "--json")
-        E = json.loads(answer)["design"]["E"]
+        E = json.loads(answer)["E"]
         assert pytest.approx(part * np.diag(np.diag(paper_pose.M[1:, 1:]))) == np.array(E)
 
 
 def test_a_new_controller_brings_its_option_to_the_command_line() -> None:
     shown = " ".join(program("simulate", "--help").replace("│", " ").split())
     assert "damped: of each joint [N m s/rad], 1" in shown
-    move = ("simulate", "ueda2003", "--from", "0.33,-0.24", "--to", "0.33,-0.25", "--sampled", "--end", "0.01")
+    move = (
+        "simulate",
+        "ueda2003",
+        "--from",
+        "0.33,-0.24",
+        "--to",
+        "0.33,-0.25",
+        "--sampled",
+        "--switch",
+        "0.01",
+        "--end",
+        "0.02",
+    )
     answers = [program(*move, "--method", "damped", *more, "--json") for more in ([], ["--viscosity", "30"])]
     assert answers[0] != answers[1]
