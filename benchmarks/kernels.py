@@ -78,7 +78,7 @@ def panda1_vs_numpy_rows() -> list[Ratio]:
 def _storing_kernel():  # type: ignore[no-untyped-def]
     """The waste that fusing avoids: M and J of every configuration through memory."""
     arm = plant(PANDA1).arm
-    m, N, k = arm.m, arm.N, arm.k
+    N, k = arm.N, arm.k
     rest = tuple(arm.base.equilibrium.tolist())
 
     def matrices(cell):  # type: ignore[no-untyped-def]
@@ -93,7 +93,7 @@ def _storing_kernel():  # type: ignore[no-untyped-def]
         configuration = Configuration(
             tuple(map(tuple, stored[:N])),
             tuple(map(tuple, stored[N:])),
-            m,
+            arm.parts,
             arm.base.stiffness.tolist(),
             arm.base.damping.tolist(),
         )

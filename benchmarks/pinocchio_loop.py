@@ -57,7 +57,7 @@ def pipeline(arm: MountedArm) -> Callable[[np.ndarray], np.ndarray]:
         upper = np.ascontiguousarray(M[:count].reshape(count, -1).T).reshape(N, N, count)
         task = np.ascontiguousarray(J[:count, rows].reshape(count, -1).T).reshape(len(rows), N, count)
         inertia = tuple(tuple(upper[min(i, j), max(i, j)] for j in range(N)) for i in range(N))
-        configuration = Configuration(inertia, tuple(map(tuple, task)), m, stiffness, damping)
+        configuration = Configuration(inertia, tuple(map(tuple, task)), arm.parts, stiffness, damping)
         return np.array([robustness(mode) for mode in configuration.modes])
 
     def run(joints: np.ndarray) -> np.ndarray:

@@ -8,7 +8,6 @@ import pytest
 from flexbase.linear.margins import (
     algebraic_loop_radius,
     algebraic_loop_radius_per_joint,
-    arm_on_free_base,
     closed_loop_abscissa,
     lag_margin,
 )
@@ -22,7 +21,7 @@ def random_gain(pose, seed, size=0.9):
     """Symmetric E whose algebraic-loop radius is about `size`: E = L F L^T with Ms = L L^T."""
     F = np.random.default_rng(seed).normal(size=(pose.arm.n, pose.arm.n))
     F = F + F.T
-    L = np.linalg.cholesky(arm_on_free_base(pose))
+    L = np.linalg.cholesky(pose.Ms)
     return size * L @ F @ L.T / np.abs(np.linalg.eigvalsh(F)).max()
 
 

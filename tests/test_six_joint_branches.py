@@ -11,7 +11,7 @@ import flexbase
 from flexbase import InputError, Plant, Unreachable
 from flexbase.dynamics.inverse.arm_angles import arm_angles_of_many
 from flexbase.dynamics.inverse.branches import NAMES
-from flexbase.dynamics.inverse.newton import newton
+from flexbase.dynamics.inverse.newton import TipProblem, solve_rows
 from flexbase.dynamics.inverse.six_joint_arm import branch_signs, six_joint_arm
 from flexbase.model.task import ROWS, Task
 from systems.planar import planar
@@ -96,7 +96,8 @@ def test_nothing_that_newton_finds_is_missing(arm, size):
         found = plant.solutions(pose.tip)
         assert len({one.branch for one in found}) == len(found)
         listed = np.array([one.joints for one in found])
-        rows, errors = newton(plant.arm.mechanism, plant.arm.task, [0.0], rng.uniform(-3.1, 3.1, (400, 6)), pose.tip)
+        problem = TipProblem(plant.arm.mechanism, plant.arm.task, np.zeros(1))
+        rows, errors = solve_rows(problem, rng.uniform(-3.1, 3.1, (400, 6)), pose.tip)
         rows = rows[errors < 1e-12]
         assert len(rows) > 20  # the witness sees something
         assert max(turn(listed - row).max(axis=1).min() for row in rows) < 1e-6

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from flexbase.cautions import caution
 from flexbase.checks import FARTHEST, Array, check_length, check_within, finite_array, is_definite
-from flexbase.dynamics.inertia import mass_matrix
+from flexbase.dynamics.inertia import arm_on_free_base, mass_matrix
 from flexbase.dynamics.inverse.arm_angles import Solution, arm_angles, arm_solutions
 from flexbase.dynamics.kinematics import Frames, forward, task_jacobian
 from flexbase.dynamics.statics import gravity_stiffness, gravity_torques, static_base
@@ -192,6 +192,11 @@ class Pose:
         return np.asarray(self._inertia.active)
 
     @cached_property
+    def Ms(self) -> Array:
+        """Mhat - Map Mpp^-1 Mpa, inertia of the arm while the base yields, shape (n, n).  [theory §8]"""
+        return np.array(arm_on_free_base(self.M.tolist(), self.arm.parts))
+
+    @cached_property
     def Jp(self) -> Array:
         """How the base moves the tip, shape (k, m)."""
         return self.arm.parts.base(self.J)
@@ -210,6 +215,16 @@ class Pose:
     def D(self) -> Array:
         """Damping of base and joint friction, shape (N, N)."""
         return np.asarray(np.diag(self.arm.mechanism.friction) + self.arm.parts.on_base(self.arm.base.damping))
+
+    @cached_property
+    def Kp(self) -> Array:
+        """Stiffness of the base with the arm held, gravity's included, shape (m, m)."""
+        return np.asarray(self.arm.parts.blocks(self.K).passive)
+
+    @cached_property
+    def Dp(self) -> Array:
+        """Damping of the base with the arm held, shape (m, m)."""
+        return np.asarray(self.arm.parts.blocks(self.D).passive)
 
     @cached_property
     def tip(self) -> Array:

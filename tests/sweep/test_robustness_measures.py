@@ -13,6 +13,7 @@ from flexbase.linear.margins import algebraic_loop_radius
 from flexbase.measures import MEASURES, Configuration
 from flexbase.model.base import make_base
 from flexbase.model.loop import Gain
+from flexbase.model.parts import base_first
 from flexbase.sweeps.engine.evaluate import compiled
 from flexbase.sweeps.engine.question import Question
 from flexbase.sweeps.engine.status import INFEASIBLE, OK
@@ -60,7 +61,7 @@ def test_a_mode_that_the_tip_does_not_see_harms_nothing(paper_pose: fb.Pose) -> 
         M[1, [0, 2, 3]] = M[[0, 2, 3], 1] = 1e-16 * random.normal(size=3)
         M[1, 1], J[:, 1] = 10.0, 1e-16 * random.normal(size=2)
         springs = ((pose.K[0, 0], 0.0), (0.0, 1e6))
-        found = Configuration(M.tolist(), J.tolist(), 2, springs, ((0.0, 0.0), (0.0, 0.0)))
+        found = Configuration(M.tolist(), J.tolist(), base_first(2, len(M)), springs, ((0.0, 0.0), (0.0, 0.0)))
         assert MEASURES["shortage"].run(found) == pytest.approx(alone, abs=1e-12)
         hidden.append(max(0.5 * (1.0 - MEASURES["alignment"].run(mode)) for mode in found.modes))
     assert max(hidden) > alone + 0.1  # without the exception it would count

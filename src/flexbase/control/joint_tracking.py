@@ -25,7 +25,7 @@ class JointTracking:
     def torque(self, seen: Measured) -> Vector:
         """Arm torques, n scalars (or batches)."""
         arm, rest = self.goal.arm, self.goal.equilibrium.tolist()
-        still = (0.0,) * arm.m
+        parts, still = arm.parts, (0.0,) * arm.m
         wanted, rates, accelerations = self.path.at(seen.time)
         corrected = tuple(
             acceleration + 2.0 * self.bandwidth * (rate - seen_rate) + self.bandwidth**2 * (joint - seen_joint)
@@ -33,5 +33,6 @@ class JointTracking:
                 wanted, rates, accelerations, seen.joints, seen.rates, strict=True
             )
         )
-        frames = forward(arm.mechanism, (*rest, *seen.joints))
-        return inverse_dynamics(frames, (*still, *seen.rates), (*still, *corrected), arm.gravity.tolist())[arm.m :]
+        frames = forward(arm.mechanism, parts.whole(rest, seen.joints))
+        speeds, changes = parts.whole(still, seen.rates), parts.whole(still, corrected)
+        return parts.arm(inverse_dynamics(frames, speeds, changes, arm.gravity.tolist()))

@@ -53,17 +53,16 @@ class NullSpaceDamping:
     def torque(self, seen: Measured) -> Vector:
         """Arm torques, n scalars (or batches)."""
         rows = tuple(map(tuple, self.W.tolist()))
-        offset = matvec(rows, minus(seen.joints, self.goal.q[self.goal.arm.m :].tolist()))
+        offset = matvec(rows, minus(seen.joints, self.goal.joints.tolist()))
         pull = plus(matvec(self.stiffness.tolist(), offset), matvec(self.damping.tolist(), matvec(rows, seen.rates)))
         return scale(-1.0, matvec(transpose(rows), pull))
 
     def close(self, system: SecondOrder) -> SecondOrder:
         """The linear model with this torque fed back, still second order."""
-        m = self.goal.arm.m
-        K, D = system.K.copy(), system.D.copy()
-        K[m:, m:] += self.W.T @ self.stiffness @ self.W
-        D[m:, m:] += self.W.T @ self.damping @ self.W
-        return replace(system, K=K, D=D)
+        springs, dampers = (
+            self.goal.arm.parts.on_arm(self.W.T @ gain @ self.W) for gain in (self.stiffness, self.damping)
+        )
+        return replace(system, K=system.K + springs, D=system.D + dampers)
 
 
 @dataclass(frozen=True)
@@ -118,9 +117,8 @@ def self_motion_damping(pose: Pose, loop: Asked = None, *, frequency: float) -> 
 
 def shares_one_beta(pose: Pose, E: Array) -> bool:
     """Whether V = beta Jp with one beta outside [0, 1], so that the consistent kind is safe.  [theory §7]"""
-    m = pose.arm.m
-    Jp = pose.J[:, :m]
-    V = pose.J[:, m:] @ np.linalg.solve(pose.M[m:, m:] - E, pose.M[m:, :m])
+    Jp = pose.Jp
+    V = pose.Jv @ np.linalg.solve(pose.Mhat - E, pose.Map)
     size = float(np.sum(Jp * Jp))
     if size == 0.0:
         return False
@@ -130,16 +128,14 @@ def shares_one_beta(pose: Pose, E: Array) -> bool:
 
 def self_motions(pose: Pose, E: Array) -> Array:
     """Basis N of the arm motions that leave the tip still, Jv N = 0, with N^T (Mhat - E) N = I, shape (n, n - k)."""
-    m, k = pose.arm.m, pose.arm.k
-    basis = np.linalg.svd(pose.J[:, m:])[2][k:].T
-    inertia = basis.T @ (pose.M[m:, m:] - E) @ basis
+    basis = np.linalg.svd(pose.Jv)[2][pose.arm.k :].T
+    inertia = basis.T @ (pose.Mhat - E) @ basis
     return np.asarray(np.linalg.solve(np.linalg.cholesky(inertia), basis.T).T)
 
 
 def _consistent(pose: Pose, E: Array) -> Array:
     """W = N^T X: W Y Jv^T = (Jv N)^T = 0 and W N = I."""
-    m = pose.arm.m
-    return np.asarray(self_motions(pose, E).T @ (pose.M[m:, m:] - E))
+    return np.asarray(self_motions(pose, E).T @ (pose.Mhat - E))
 
 
 def _blind_to_base(pose: Pose, E: Array) -> Array:
@@ -147,10 +143,10 @@ def _blind_to_base(pose: Pose, E: Array) -> Array:
 
     T's columns are recombined to orthonormal ones in X, as many as Map has rank; V^+ is weighted by the tip's mobility.
     """
-    m, k = pose.arm.m, pose.arm.k
-    Jv, L = pose.J[:, m:], np.linalg.cholesky(pose.M[m:, m:] - E)
+    k = pose.arm.k
+    Jv, L = pose.Jv, np.linalg.cholesky(pose.Mhat - E)
     force = np.linalg.solve(L, Jv.T)
-    into, sizes, _ = np.linalg.svd(np.linalg.solve(L, pose.M[m:, :m]), full_matrices=False)
+    into, sizes, _ = np.linalg.svd(np.linalg.solve(L, pose.Map), full_matrices=False)
     reach = int(np.sum(sizes > FELT * sizes.max(initial=0.0)))
     root = np.linalg.cholesky(force.T @ force)
     V = np.linalg.solve(root, force.T @ into[:, :reach])

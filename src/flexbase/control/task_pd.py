@@ -24,8 +24,8 @@ class TaskPD:
     def torque(self, seen: Measured) -> Vector:
         """Arm torques, n scalars (or batches)."""
         arm, rest = self.goal.arm, self.goal.equilibrium.tolist()
-        rows = task_jacobian(forward(arm.mechanism, (*rest, *seen.joints)), arm.task.indices)
-        Jv = tuple(row[arm.m :] for row in rows)
+        rows = task_jacobian(forward(arm.mechanism, arm.parts.whole(rest, seen.joints)), arm.task.indices)
+        Jv = tuple(map(arm.parts.arm, rows))
         pull = plus(
             matvec(self.gains.stiffness.tolist(), seen.tip_error), matvec(self.gains.damping.tolist(), seen.tip_rate)
         )

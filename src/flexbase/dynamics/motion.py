@@ -10,7 +10,7 @@ from flexbase.dynamics.inertia import mass_matrix
 from flexbase.dynamics.kinematics import Frames, task_jacobian
 from flexbase.dynamics.variation import varied_base
 from flexbase.model.mounted import MountedArm
-from flexbase.trace.algebra import Matrix, Scalar, Vector, matvec, minus, mul, plus, sub, transpose
+from flexbase.trace.algebra import Matrix, Scalar, Vector, matsub, matvec, minus, mul, plus, scale, transpose
 
 AS_IT_IS: Mapping[str, Scalar] = {}  # no parameter is varied
 
@@ -39,12 +39,12 @@ def equation_of_motion(
     torque : tau of the arm joints, n; rest : of the base springs, m
     tip_force : F on the tool in the task's rows, k, or nothing
     """
-    base, friction = q[: arm.m], arm.mechanism.friction
+    parts, friction = arm.parts, arm.mechanism.friction
     spring = minus(
-        matvec(varied_base(arm, "stiffness", varied), minus(rest, base)),
-        matvec(varied_base(arm, "damping", varied), rates[: arm.m]),
+        matvec(varied_base(arm, "stiffness", varied), minus(rest, parts.base(q))),
+        matvec(varied_base(arm, "damping", varied), parts.base(rates)),
     )
-    force: Vector = (*spring, *torque)
+    force: Vector = parts.whole(spring, tuple(torque))
     if len(tip_force):
         force = plus(force, matvec(transpose(task_jacobian(frames, arm.task.indices)), tip_force))
     force = minus(force, [mul(float(c), rate) for c, rate in zip(friction, rates, strict=True)])
@@ -58,8 +58,4 @@ def under_gain(arm: MountedArm, inertia: Matrix, E: Matrix | None, share: Scalar
     """
     if E is None:
         return inertia
-    m = arm.m
-    return tuple(
-        tuple(sub(entry, mul(share, E[i - m][j - m])) if min(i, j) >= m else entry for j, entry in enumerate(row))
-        for i, row in enumerate(inertia)
-    )
+    return matsub(inertia, arm.parts.on_arm(tuple(scale(share, row) for row in E)))

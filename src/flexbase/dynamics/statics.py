@@ -34,14 +34,13 @@ def gravity_stiffness(arm: MountedArm, q: Array) -> Array:
 
 def static_base(arm: MountedArm, arm_joints: Array, equilibrium: Array) -> Array:
     """Base joints at rest under gravity while the arm holds: Kp (qbar_p - q_p) = g_p(q). Raises InputError."""
-    m = arm.m
     sag = equilibrium.copy()
-    if not arm.has_gravity or m == 0:
+    if not arm.has_gravity or arm.m == 0:
         return sag
     for _ in range(50):
-        q = np.concatenate([sag, arm_joints])
-        residual = arm.base.stiffness @ (sag - equilibrium) + gravity_torques(arm, q)[:m]
-        slope = arm.base.stiffness + gravity_stiffness(arm, q)[:m, :m]
+        q = arm.parts.whole(sag, arm_joints)
+        residual = arm.base.stiffness @ (sag - equilibrium) + arm.parts.base(gravity_torques(arm, q))
+        slope = arm.base.stiffness + arm.parts.blocks(gravity_stiffness(arm, q)).passive
         if np.linalg.eigvalsh(slope)[0] <= 0.0:
             break
         step = np.linalg.solve(slope, -residual)

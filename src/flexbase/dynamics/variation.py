@@ -40,8 +40,8 @@ def parameters_of(arm: MountedArm) -> dict[str, Parameter]:
     names = arm.mechanism.joint_names
     found = dict(PARAMETERS)
     for kinds, joints, whole in (
-        (OF_BASE_JOINTS, names[: arm.m], "the base's {kind} at joint {joint} alone"),
-        (OF_ARM_JOINTS, names[arm.m :], "{kind} of the link behind joint {joint} alone"),
+        (OF_BASE_JOINTS, arm.parts.base(names), "the base's {kind} at joint {joint} alone"),
+        (OF_ARM_JOINTS, arm.parts.arm(names), "{kind} of the link behind joint {joint} alone"),
     ):
         for kind in kinds:
             for joint in joints:
@@ -56,7 +56,7 @@ def varied_frames(arm: MountedArm, frames: Frames, parameters: Mapping[str, Scal
     parameters : names of `parameters_of` -> values; what is left out is nominal
     """
     links, coms = list(frames.links), list(frames.coms)
-    for i in range(arm.m, arm.N):
+    for i in arm.parts.active:
         heavier, farther = (_factor(parameters, kind, arm.mechanism.joint_names[i]) for kind in OF_ARM_JOINTS)
         link = links[i]
         turned = tuple(tuple(scale(heavier, row)) for row in link.inertia)
@@ -69,7 +69,7 @@ def varied_frames(arm: MountedArm, frames: Frames, parameters: Mapping[str, Scal
 def varied_base(arm: MountedArm, kind: str, parameters: Mapping[str, Scalar]) -> Matrix:
     """The base's "stiffness" or "damping" matrix under parameters, m x m."""
     matrix: Matrix = {"stiffness": arm.base.stiffness, "damping": arm.base.damping}[kind].tolist()
-    names = arm.mechanism.joint_names[: arm.m]
+    names = arm.parts.base(arm.mechanism.joint_names)
     whole = parameters.get(kind, 1.0)
     own: Vector = [parameters.get(f"{kind}.{name}", 1.0) for name in names]
     return tuple(

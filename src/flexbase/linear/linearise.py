@@ -28,12 +28,12 @@ class ReducedArrays(NamedTuple):
 
 def has_arm_stiffness(pose: Pose) -> bool:
     """Whether gravity stiffens the arm's own motions."""
-    return bool(np.abs(pose.K[pose.arm.m :]).max() > NEGLIGIBLE * np.abs(pose.K).max(initial=0.0))
+    return bool(np.abs(pose.arm.parts.arm(pose.K)).max() > NEGLIGIBLE * np.abs(pose.K).max(initial=0.0))
 
 
 def has_arm_friction(pose: Pose) -> bool:
     """Whether the arm's joints have viscous friction."""
-    return bool(pose.D[pose.arm.m :].any())
+    return bool(pose.arm.parts.arm(pose.D).any())
 
 
 def is_reducible(pose: Pose) -> bool:
@@ -43,9 +43,7 @@ def is_reducible(pose: Pose) -> bool:
 
 def modified_inertia(pose: Pose, E: Array) -> Array:
     """M - blkdiag(0, E), shape (N, N).  [U03 eq 11]"""
-    M = pose.M.copy()
-    M[pose.arm.m :, pose.arm.m :] -= E
-    return M
+    return np.asarray(pose.M - pose.arm.parts.on_arm(E))
 
 
 def check_definite_inertia(pose: Pose, E: Array) -> Array:
@@ -68,12 +66,11 @@ def linearise(pose: Pose, loop: Asked = None) -> SecondOrder:
     check_pose(pose)
     arm = pose.arm
     rows = arm.task.rows
-    B = np.vstack([np.zeros((arm.m, arm.k)), pose.J[:, arm.m :].T])
     return SecondOrder(
         M=check_definite_inertia(pose, loop_on(pose.arm, loop).gain),
         D=pose.D,
         K=pose.K,
-        B=B,
+        B=arm.parts.whole(np.zeros((arm.k, arm.m)), pose.Jv).T,
         C=pose.J,
         joint_names=arm.mechanism.joint_names,
         input_names=tuple(f"f_{row}" for row in rows),
@@ -84,6 +81,6 @@ def linearise(pose: Pose, loop: Asked = None) -> SecondOrder:
 def reduced_arrays(pose: Pose, E: Array) -> ReducedArrays:
     """The reduced form of a pose under the gain E.  [theory §3]"""
     arm = pose.arm
-    reduced = reduce_arm(pose.M.tolist(), pose.J.tolist(), arm.m, E.tolist())
+    reduced = reduce_arm(pose.M.tolist(), pose.J.tolist(), arm.parts, E.tolist())
     shapes = ((arm.k, arm.k), (arm.k, arm.m), (arm.k, arm.m), (arm.m, arm.m), (arm.n, arm.m))
     return ReducedArrays(*(np.array(part).reshape(shape) for part, shape in zip(reduced[:5], shapes, strict=True)))

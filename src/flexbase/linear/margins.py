@@ -17,16 +17,9 @@ LAGS = np.geomspace(1e-7, 1.0, 141)  # [s]; a loop that bears a second of lag is
 PHASE_STARTS = 256
 
 
-def arm_on_free_base(pose: Pose) -> Array:
-    """Ms = Mhat - Map Mpp^-1 Mpa: what the arm joints weigh while the base yields, shape (n, n).  [theory §8]"""
-    m = pose.arm.m
-    M = pose.M
-    return M[m:, m:] - M[m:, :m] @ np.asarray(np.linalg.solve(M[:m, :m], M[:m, m:]), dtype=float) if m else M.copy()
-
-
 def loop_matrix(pose: Pose, E: Array) -> Array:
     """Ms^-1 E: the gain once around the algebraic loop q'' -> torque -> q''."""
-    return np.asarray(np.linalg.solve(arm_on_free_base(pose), E), dtype=float)
+    return np.asarray(np.linalg.solve(pose.Ms, E), dtype=float)
 
 
 def algebraic_loop_radius(pose: Pose, E: Array) -> float:

@@ -19,6 +19,7 @@ from flexbase.linear.linearise import (
 from flexbase.linear.quadratic_eigenproblem import Pole, RealShapes, damped_poles, real_shapes
 from flexbase.linear.reduced import RealMode, alignment, robustness
 from flexbase.model.loop import Asked, Gain, loop_on
+from flexbase.model.mounted import MountedArm
 from flexbase.plant import Pose, check_pose
 from flexbase.sheets.numbers import matrix, number
 from flexbase.sheets.plain import Plain
@@ -165,7 +166,7 @@ def modes(pose: Pose, loop: Asked = None) -> Modes:
 
 def _reduced(pose: Pose, E: Array) -> tuple[list[Mode], Array, str]:
     reduced, m = reduced_arrays(pose, E), pose.arm.m
-    D, K = pose.D[:m, :m], pose.K[:m, :m]
+    D, K = pose.Dp, pose.Kp
     if m == 0:
         return [], reduced.R0, RIGID
     real = real_shapes(reduced.S, D, K)
@@ -174,7 +175,7 @@ def _reduced(pose: Pose, E: Array) -> tuple[list[Mode], Array, str]:
         return [_real_mode(pose, reduced, real, i) for i in range(m)], reduced.R0, caveat
     poles = damped_poles(reduced.S, D, K)
     found = [
-        _damped_mode(pose, pole, -reduced.U @ pole.shape, reduced.V @ pole.shape, _follow(reduced, pole.shape))
+        _damped_mode(pose, pole, -reduced.U @ pole.shape, reduced.V @ pole.shape, _follow(pose, reduced, pole.shape))
         for pole in poles
     ]
     return found, reduced.R0, INDICATOR
@@ -186,7 +187,7 @@ def _full(pose: Pose, E: Array) -> tuple[list[Mode], Array, str]:
     if m == 0:
         return [], reduced_arrays(pose, E).R0, RIGID
     poles = damped_poles(system.M, system.D, system.K)
-    poles.sort(key=lambda pole: -_base_stiffness_of(pole, system.M, pose.arm.base.stiffness))
+    poles.sort(key=lambda pole: -_base_stiffness_of(pole, system.M, pose.arm))
     base_poles = sorted(poles[:m], key=lambda pole: abs(pole.value))
     found = [_damped_mode(pose, p, system.C @ p.shape, system.B.T @ p.shape, p.shape) for p in base_poles]
     leading = system.C @ np.linalg.solve(
@@ -214,7 +215,7 @@ def _real_mode(pose: Pose, reduced: ReducedArrays, real: RealShapes, index: int)
         residue_s=np.zeros((pose.arm.k, pose.arm.k)),
         robustness=0.0 if vanishes else float(robustness(mode.a, mode.b)),
         alignment=None if vanishes else float(alignment(mode.a, mode.b)),
-        shape=_scaled(_follow(reduced, phi)),
+        shape=_scaled(_follow(pose, reduced, phi)),
         participation=participation,
         label=_label(pose, participation),
     )
@@ -226,7 +227,7 @@ def _damped_mode(pose: Pose, pole: Pole, out: np.ndarray, into: np.ndarray, shap
     pair = 2.0 if pole.value.imag > 0.0 else 1.0
     residue = -pair * np.real(np.conj(pole.value) * dyad)
     singular_values = np.linalg.svd(residue, compute_uv=False).sum()
-    participation = _participation(pose, shape[: pose.arm.m])
+    participation = _participation(pose, pose.arm.parts.base(shape))
     return Mode(
         frequency=abs(pole.value),
         damping_ratio=-pole.value.real / abs(pole.value),
@@ -240,9 +241,9 @@ def _damped_mode(pose: Pose, pole: Pole, out: np.ndarray, into: np.ndarray, shap
     )
 
 
-def _follow(reduced: ReducedArrays, base_shape: np.ndarray) -> np.ndarray:
+def _follow(pose: Pose, reduced: ReducedArrays, base_shape: np.ndarray) -> np.ndarray:
     """All joints of a mode: the arm moves by -W psi when the base moves by psi."""
-    return np.concatenate([base_shape, -reduced.W @ base_shape])
+    return pose.arm.parts.whole(base_shape, -reduced.W @ base_shape)
 
 
 def _scaled(shape: np.ndarray) -> np.ndarray:
@@ -256,7 +257,7 @@ def _participation(pose: Pose, base_shape: np.ndarray) -> Array:
 
 def _label(pose: Pose, participation: Array) -> str:
     """Base joints by their share of the strain energy, until nine tenths are named."""
-    names, named, label = pose.arm.mechanism.joint_names, 0.0, []
+    names, named, label = pose.arm.parts.base(pose.arm.mechanism.joint_names), 0.0, []
     for joint in np.argsort(-participation):
         label.append(f"{names[joint]} {100.0 * participation[joint]:.0f} %")
         named += participation[joint]
@@ -265,10 +266,10 @@ def _label(pose: Pose, participation: Array) -> str:
     return ", ".join(label)
 
 
-def _base_stiffness_of(pole: Pole, M: Array, base_stiffness: Array) -> float:
+def _base_stiffness_of(pole: Pole, M: Array, arm: MountedArm) -> float:
     """Rayleigh quotient of the base springs alone: large for the modes that the base makes."""
-    base = pole.shape[: len(base_stiffness)]
-    strain = np.real(np.conj(base) @ base_stiffness @ base)
+    base = arm.parts.base(pole.shape)
+    strain = np.real(np.conj(base) @ arm.base.stiffness @ base)
     return float(strain / np.real(np.conj(pole.shape) @ M @ pole.shape))
 
 

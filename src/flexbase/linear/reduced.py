@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from flexbase.model.parts import Parts
 from flexbase.trace.algebra import (
     Matrix,
     Scalar,
@@ -54,18 +55,14 @@ class RealMode(NamedTuple):
     damping_ratio: Scalar
 
 
-def reduce_arm(M: Matrix, J: Matrix, m: int, E: Matrix | None = None) -> Reduced:
+def reduce_arm(M: Matrix, J: Matrix, parts: Parts, E: Matrix | None = None) -> Reduced:
     """Eliminate the arm from M (N x N) and J (k x N); E (n x n) is taken from the arm's inertia.
 
     Assumes that damping and stiffness act on the base alone, and X = Mhat - E without a zero pivot.
     """
-    Mpp = tuple(row[:m] for row in M[:m])
-    Map = tuple(row[:m] for row in M[m:])
-    X: Matrix = tuple(row[m:] for row in M[m:])
-    if E is not None:
-        X = matsub(X, E)
-    Jp = tuple(row[:m] for row in J)
-    Jv = tuple(row[m:] for row in J)
+    (Mpp, Map, Mhat), m = parts.blocks(M), len(parts.passive)
+    X: Matrix = Mhat if E is None else matsub(Mhat, E)
+    Jp, Jv = tuple(map(parts.base, J)), tuple(map(parts.arm, J))
     L, pivots = ldl(X)
     W = transpose(tuple(solve_ldl(L, pivots, column) for column in transpose(Map))) if m else tuple(() for _ in X)
     force = transpose(tuple(solve_ldl(L, pivots, row) for row in Jv))

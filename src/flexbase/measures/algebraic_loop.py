@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from flexbase.dynamics.inertia import arm_on_free_base
 from flexbase.measures.registry import Configuration, measure
-from flexbase.trace.algebra import Matrix, Scalar, absolute, larger, ldl, matmul, matsub, solve_ldl, transpose
+from flexbase.trace.algebra import Matrix, Scalar, absolute, larger
 from flexbase.trace.eigen import generalised_eigen
 
 
@@ -22,15 +23,5 @@ def algebraic_loop_radius(configuration: Configuration) -> Scalar:
 
 def loop_radius(configuration: Configuration, E: Matrix) -> Scalar:
     """rho(Ms^-1 E) of a symmetric E."""
-    values = generalised_eigen(E, arm_on_free_base(configuration.M, configuration.m)).values
+    values = generalised_eigen(E, arm_on_free_base(configuration.M, configuration.parts)).values
     return larger(absolute(values[0]), absolute(values[-1]))
-
-
-def arm_on_free_base(M: Matrix, m: int) -> Matrix:
-    """Ms = Mhat - Map Mpp^-1 Mpa: what the arm joints weigh while the base yields, n x n.  [theory §8]"""
-    Mhat, Map = tuple(row[m:] for row in M[m:]), tuple(row[:m] for row in M[m:])
-    if m == 0:
-        return Mhat
-    L, pivots = ldl(tuple(row[:m] for row in M[:m]))
-    carried = transpose(tuple(solve_ldl(L, pivots, row) for row in Map))  # Mpp^-1 Mpa
-    return matsub(Mhat, matmul(Map, carried))

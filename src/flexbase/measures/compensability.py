@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from flexbase.measures.registry import Configuration, measure
-from flexbase.trace.algebra import Matrix, Scalar, Vector, dot, scale, solve
+from flexbase.model.parts import Parts
+from flexbase.trace.algebra import Matrix, Scalar, Vector, dot, scale, solve, transpose
 
 
 class Coupling(NamedTuple):
@@ -21,10 +22,10 @@ class Coupling(NamedTuple):
     product: Scalar
 
 
-def coupling(M: Matrix, J: Matrix) -> Coupling:
+def coupling(M: Matrix, J: Matrix, parts: Parts) -> Coupling:
     """z, y and y.z. Assumes one base joint, as many task rows as arm joints, and a regular arm."""
-    z = solve(tuple(row[1:] for row in J), tuple(row[0] for row in J))
-    y = scale(-1.0, tuple(row[0] for row in M[1:]))
+    (Jp,), (Map,) = transpose(tuple(map(parts.base, J))), transpose(parts.blocks(M).coupling)
+    z, y = solve(tuple(map(parts.arm, J)), Jp), scale(-1.0, Map)
     return Coupling(z, y, dot(y, z))
 
 
@@ -40,4 +41,5 @@ def compensability(configuration: Configuration) -> Scalar:
 
     Assumes m = 1, k = n and a regular arm. At exactly 1 (y.z = 0) only an infinite gain would do.
     """
-    return 1.0 + coupling(configuration.M, configuration.J).product / configuration.M[0][0]
+    product = coupling(configuration.M, configuration.J, configuration.parts).product
+    return 1.0 + product / configuration.inertia.passive[0][0]

@@ -18,8 +18,8 @@ def _needs(m: int, n: int, k: int) -> str | None:
 
 def feasible(configuration: Configuration) -> Scalar:
     """Whether a gain aligns the mode: y.z > 0 or -Mpp < y.z < 0.  [theory §7]"""
-    product = coupling(configuration.M, configuration.J).product
-    return product * product * (configuration.M[0][0] + smaller(product, 0.0)) > 0.0
+    product = coupling(configuration.M, configuration.J, configuration.parts).product
+    return product * product * (configuration.inertia.passive[0][0] + smaller(product, 0.0)) > 0.0
 
 
 @measure(
@@ -50,10 +50,10 @@ def exact_radius(configuration: Configuration) -> Scalar:
 
 def exact_E(configuration: Configuration) -> Matrix:
     """E of the exact design with the least gain. Assumes m = 1, k = n, and a configuration that is feasible."""
-    M, stiffness = configuration.M, configuration.stiffness[0][0]
-    z, y, product = coupling(M, configuration.J)
-    slowest = sqrt(stiffness / (M[0][0] + smaller(product, 0.0)))
+    inertia, stiffness = configuration.inertia.passive[0][0], configuration.stiffness[0][0]
+    z, y, product = coupling(configuration.M, configuration.J, configuration.parts)
+    slowest = sqrt(stiffness / (inertia + smaller(product, 0.0)))
     present = sqrt(stiffness / configuration.original.S[0][0])
     frequency = larger(RAISE * present, CLEARANCE * slowest)
-    alpha = (M[0][0] - stiffness / (frequency * frequency)) / product
-    return least_gain(tuple(row[1:] for row in M[1:]), z, y, alpha)
+    alpha = (inertia - stiffness / (frequency * frequency)) / product
+    return least_gain(configuration.inertia.active, z, y, alpha)

@@ -125,9 +125,8 @@ def manipulability(pose: Pose, loop: Asked = None, convention: str = "force") ->
 
 
 def _ellipsoid(pose: Pose, E: Array, convention: str) -> Ellipsoid:
-    m = pose.arm.m
-    Jv = pose.J[:, m:]
-    response = np.linalg.solve(pose.M[m:, m:] - E, Jv.T).T  # Jv X^-1
+    Jv = pose.Jv
+    response = np.linalg.solve(pose.Mhat - E, Jv.T).T  # Jv X^-1
     if convention == "force":
         axes, directions = np.linalg.eigh(response @ Jv.T)
         return Ellipsoid(convention, axes[::-1], directions[:, ::-1])

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 from flexbase.linear.real_modes import real_modes
 from flexbase.linear.reduced import RealMode, Reduced, reduce_arm
+from flexbase.model.parts import Blocks, Parts
 from flexbase.model.task import Gains
 from flexbase.trace.algebra import Matrix, Scalar
 
@@ -17,7 +18,7 @@ from flexbase.trace.algebra import Matrix, Scalar
 class Configuration:
     """What a measure may read of one configuration (or a batch of them, or a traced one).
 
-    M, J : inertia (N x N) and task Jacobian (k x N); m : base joints, which come first
+    M, J : inertia (N x N) and task Jacobian (k x N); parts : which joints are the base
     stiffness, damping : of the base, Kp and Dp, m x m
     E : a compensator's gain, n x n, or None
     gains : of the task-space law, k x k each, or None
@@ -25,21 +26,26 @@ class Configuration:
 
     M: Matrix
     J: Matrix
-    m: int
+    parts: Parts
     stiffness: Matrix
     damping: Matrix
     E: Matrix | None = None
     gains: Gains | None = None
 
     @cached_property
+    def inertia(self) -> Blocks:
+        """Mpp, Map and Mhat."""
+        return self.parts.blocks(self.M)
+
+    @cached_property
     def reduced(self) -> Reduced:
         """The reduced form under E."""
-        return reduce_arm(self.M, self.J, self.m, self.E)
+        return reduce_arm(self.M, self.J, self.parts, self.E)
 
     @cached_property
     def original(self) -> Reduced:
         """The reduced form without a compensator."""
-        return self.reduced if self.E is None else reduce_arm(self.M, self.J, self.m)
+        return self.reduced if self.E is None else reduce_arm(self.M, self.J, self.parts)
 
     @cached_property
     def modes(self) -> tuple[RealMode, ...]:

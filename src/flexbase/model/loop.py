@@ -129,4 +129,4 @@ def gain_on(arm: MountedArm, compensator: object) -> Array:
 
 def _designed_at(arm: MountedArm, compensator: object) -> Array | None:
     q = getattr(compensator, "q", None)
-    return None if q is None or len(q) != arm.N else np.asarray(q, dtype=float)[arm.m :]
+    return None if q is None or len(q) != arm.N else arm.parts.arm(np.asarray(q, dtype=float))

@@ -78,6 +78,18 @@ class Mechanism:
         return len(self.joint_names)
 
     @cached_property
+    def reach(self) -> float:
+        """Sum of all link offsets, or 1 [m]: no tip is farther out while prismatic joints stand at zero."""
+        offsets = np.linalg.norm(self.placement_position, axis=1).sum()
+        return float(offsets + np.linalg.norm(self.tool_position)) or 1.0
+
+    @property
+    def ranges(self) -> tuple[tuple[float, float], ...]:
+        """Low and high of each joint [rad or m]: a turn, or the reach to either side where it slides."""
+        spans = [np.pi if kind == "revolute" else self.reach for kind in self.joint_types]
+        return tuple((-span, span) for span in spans)
+
+    @cached_property
     def links(self) -> tuple[Link, ...]:
         """The chain as plain Python numbers, one `Link` a joint."""
         return tuple(

@@ -51,7 +51,7 @@ class Parts(NamedTuple):
     def whole(self, base: Any, arm: Any) -> Any:
         """Both parts together, in the order of the chain."""
         order = np.argsort((*self.passive, *self.active))
-        if isinstance(arm, np.ndarray):
+        if isinstance(base, np.ndarray) and isinstance(arm, np.ndarray):
             return _chosen(np.concatenate([base, arm], axis=-1), order)
         return _chosen((*base, *arm), order)
 
@@ -62,18 +62,20 @@ class Parts(NamedTuple):
             return Blocks(*(matrix[np.ix_(rows, columns)] for rows, columns in pairs))
         return Blocks(*(tuple(_chosen(matrix[row], columns) for row in rows) for rows, columns in pairs))
 
-    def on_base(self, block: np.ndarray) -> np.ndarray:
+    def on_base(self, block: Any) -> Any:
         """The N x N matrix that is this block, m x m, on the passive joints and zero elsewhere."""
         return self._spread(block, self.passive)
 
-    def on_arm(self, block: np.ndarray) -> np.ndarray:
+    def on_arm(self, block: Any) -> Any:
         """The N x N matrix that is this block, n x n, on the active joints and zero elsewhere."""
         return self._spread(block, self.active)
 
-    def _spread(self, block: np.ndarray, joints: tuple[int, ...]) -> np.ndarray:
-        whole = np.zeros((len(self.passive) + len(self.active),) * 2)
+    def _spread(self, block: Any, joints: tuple[int, ...]) -> Any:
+        N = len(self.passive) + len(self.active)
+        whole = np.zeros((N, N), dtype=float if isinstance(block, np.ndarray) else object)
+        whole[:] = 0.0
         whole[np.ix_(joints, joints)] = block
-        return whole
+        return whole if isinstance(block, np.ndarray) else tuple(map(tuple, whole.tolist()))
 
 
 def base_first(m: int, N: int) -> Parts:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from flexbase.plant import Plant, Pose
 
 
@@ -41,7 +39,7 @@ def changed_pose(pose: Pose, change: Changed) -> Pose:
         mass, inertia = mechanism.mass.copy(), mechanism.inertia.copy()
         mass[-1], inertia[-1] = change.last_link * mass[-1], change.last_link * inertia[-1]
         mechanism = replace(mechanism, mass=mass, inertia=inertia)
-    joints = pose.q[arm.m :].copy()
+    joints = pose.joints.copy()
     for joint, offset in change.joints:
         joints[joint] += offset
-    return Plant(replace(arm, base=base, mechanism=mechanism)).at(np.concatenate([pose.equilibrium, joints]))
+    return Plant(replace(arm, base=base, mechanism=mechanism)).at(arm.parts.whole(pose.equilibrium, joints))

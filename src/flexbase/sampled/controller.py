@@ -67,8 +67,8 @@ def _said(value: Any) -> str:
 
 def task_pd(pose: Pose, sensing: Sensing, gains: Gains) -> Discrete:
     """tau = -Jv^T (Kp e + Kv (e - e before)/h): what a sampled task-space PD does, shape (n, k + 2n)."""
-    n, k, m = pose.arm.n, pose.arm.k, pose.arm.m
-    every, Jv = sensing.task_every, pose.J[:, m:]
+    n, k = pose.arm.n, pose.arm.k
+    every, Jv = sensing.task_every, pose.Jv
     back = every * sensing.step
     pull = -Jv.T
     proportional, rate = pull @ gains.stiffness, pull @ gains.damping / back

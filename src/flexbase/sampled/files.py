@@ -81,7 +81,7 @@ def _read(path: str | Path, document: dict[str, Any], plant: Plant) -> SampledCo
     rest = finite_array(f"{path}: equilibrium", document["equilibrium"])
     if joints.shape != (arm.N,) or rest.shape != (arm.m,):
         raise InputError(f"{path}: {joints.size} joints, but {plant.name} has {arm.N}. {MEND}")
-    pose = plant.at(np.concatenate([rest, joints[arm.m :]]))
+    pose = plant.at(arm.parts.whole(rest, arm.parts.arm(joints)))
     E = None if document["E"] is None else finite_array(f"{path}: E", document["E"])
     if E is not None and E.shape != (arm.n, arm.n):
         raise InputError(f"{path}: E has shape {E.shape}, but {plant.name} has {arm.n} arm joints. {MEND}")

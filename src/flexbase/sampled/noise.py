@@ -19,7 +19,7 @@ ACCELERATION_NOISE = 0.5  # rad/s^2 or m/s^2, where the sensing declares none
 def sensor_noise(controller: SampledController) -> Array:
     """Standard deviations of tip error (k), joints (n) and accelerations (n); declared, or typical ones."""
     sensing, n, k = controller.sensing, controller.pose.arm.n, controller.pose.arm.k
-    prismatic = np.array([kind == "prismatic" for kind in controller.pose.arm.mechanism.joint_types[-n:]])
+    prismatic = np.array([unit == "m" for unit in controller.pose.arm.joint_units])
     quantum = np.where(prismatic, 1.0, 2.0 * np.pi) / (sensing.encoder_counts or COUNTS)
     return np.concatenate(
         [

@@ -25,7 +25,7 @@ def end_on(plant: Plant, wanted: Pose | ArrayLike, near: Array | None) -> Pose:
 def check_same_joints(plant: Plant, pose: Pose) -> None:
     """Raises InputError for a pose of a robot with other joints."""
     here, there = plant.arm.mechanism, pose.arm.mechanism
-    if (here.joint_names, here.joint_types, plant.arm.m) != (there.joint_names, there.joint_types, pose.arm.m):
+    if (here.joint_names, here.joint_types, plant.arm.parts) != (there.joint_names, there.joint_types, pose.arm.parts):
         raise InputError(
             f"simulate: {pose.plant.name} has other joints than {plant.name}. Give a pose of the same robot, or of one "
             "that differs in numbers only."

@@ -15,7 +15,7 @@ from flexbase.trace.algebra import Scalar, Vector
 
 def moving_law(goal: Pose, start: Vector, switch: Scalar, move: IdealMove) -> JointTracking:
     """Inverse dynamics of the rigid arm along a straight path in joint space, from n arm joints."""
-    path = JointPath(start, goal.q[goal.arm.m :].tolist(), switch, LAWS[move.trajectory])
+    path = JointPath(start, goal.joints.tolist(), switch, LAWS[move.trajectory])
     return JointTracking(goal, path, move.bandwidth)
 
 

@@ -14,7 +14,7 @@ from flexbase.trace.algebra import Scalar, Vector, matvec, unstack
 def measured(arm: MountedArm, frames: Frames, time: Scalar, q: Vector, rates: Vector, tip_error: Vector) -> Measured:
     """The part of a state that a controller gets, on any number type; the tip's rate is J q'."""
     tip_rate = matvec(task_jacobian(frames, arm.task.indices), rates)
-    return Measured(time, q[arm.m :], rates[arm.m :], tip_error, tip_rate)
+    return Measured(time, arm.parts.arm(q), arm.parts.arm(rates), tip_error, tip_rate)
 
 
 def observe(goal: Pose, time: float | Array, q: Array, rates: Array) -> tuple[Frames, Measured]:

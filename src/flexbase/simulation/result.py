@@ -77,7 +77,7 @@ class Run:
     @property
     def peak_speed(self) -> Array:
         """Largest speed of each arm joint [rad/s or m/s], shape (n,)."""
-        return np.asarray(np.abs(self.rates[:, self.goal.arm.m :]).max(axis=0))
+        return np.asarray(np.abs(self.goal.arm.parts.arm(self.rates)).max(axis=0))
 
     @property
     def caution(self) -> str | None:

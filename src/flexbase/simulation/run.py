@@ -40,10 +40,10 @@ def simulate(
     with collected() as said:
         spec = loop_on(plant.arm, loop)
         there = end_on(plant, goal, spec.designed_at)
-        here = end_on(plant, start, there.q[plant.arm.m :])
+        here = end_on(plant, start, there.joints)
         check_definite_inertia(there, spec.gain)
         physics = ENGINES[move.engine].accelerations(there)
-        tracking = moving_law(there, here.q[plant.arm.m :].tolist(), move.switch, move)
+        tracking = moving_law(there, here.joints.tolist(), move.switch, move)
         first = spec.E if move.compensate == "always" else None
         stages = (
             Stage(there, physics, tracking, first, 0.0, move.switch),

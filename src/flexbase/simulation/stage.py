@@ -85,10 +85,10 @@ class Stage:
         return np.concatenate([rates, self.physics(frames, q, rates, stack(self.law.torque(seen)), self.E)])
 
     def _torque(self, times: Array, states: Array) -> Array:
-        N, m = self.goal.arm.N, self.goal.arm.m
+        N, parts = self.goal.arm.N, self.goal.arm.parts
         q, rates = states[:, :N], states[:, N:]
         frames, seen = observe(self.goal, times, q, rates)
         torque = np.asarray(stack(self.law.torque(seen)))
         if self.E is None:
             return torque
-        return np.asarray(torque + self.physics(frames, q, rates, torque, self.E)[:, m:] @ self.E)
+        return np.asarray(torque + parts.arm(self.physics(frames, q, rates, torque, self.E)) @ self.E)

@@ -26,10 +26,12 @@ class Description:
             {
                 "name": name,
                 "type": kind,
-                "unit": "rad" if kind == "revolute" else "m",
-                "part": "base" if i < arm.m else "arm",
+                "unit": unit,
+                "part": "base" if i in arm.parts.passive else "arm",
             }
-            for i, (name, kind) in enumerate(zip(chain.joint_names, chain.joint_types, strict=True))
+            for i, (name, kind, unit) in enumerate(
+                zip(chain.joint_names, chain.joint_types, chain.joint_units, strict=True)
+            )
         )
 
     @property
@@ -43,7 +45,7 @@ class Description:
     @property
     def sag(self) -> Array | None:
         """How far gravity brings the base joints from their equilibrium, shape (m,); None without a pose."""
-        return None if self.pose is None else np.asarray(self.pose.q[: self.plant.arm.m] - self.pose.equilibrium)
+        return None if self.pose is None else self.pose.sag
 
     def to_dict(self) -> dict[str, Any]:
         """Plain numbers in SI units; "pose", "gains", "sensing" are None where there are none."""

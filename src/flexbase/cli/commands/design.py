@@ -62,7 +62,7 @@ def design(
             raise
         put(document("design", {"infeasible": str(reason)}))
         return 1
-    kinds = ["rad" if kind == "revolute" else "m" for kind in plant.arm.mechanism.joint_types[plant.arm.m :]]
+    kinds = plant.arm.joint_units
     if out is not None:
         found.save(out)
     real = as_it_runs(at, Loop(found, gains, sensing))

@@ -64,8 +64,7 @@ def _tables(found: Postures) -> list[RenderableType]:
     rows += [_row("unasked", found.usual, several)] if found.usual else []
     unit = "" if found.measure.unit == "1" else f"\n[{found.measure.unit}]"
     modes = [f"mode {i + 1}" for i in range(len(found.best.modes))] if several else []
-    names, kinds = arm.mechanism.joint_names[arm.m :], arm.mechanism.joint_types[arm.m :]
-    best = listed(found.best.joints, names, ["rad" if kind == "revolute" else "m" for kind in kinds])
+    best = listed(found.best.joints, arm.joint_names, arm.joint_units)
     heading = f"postures by {found.measure.name} {'with' if found.compensated else 'without'} compensator"
     where = listed(found.target, arm.task.rows, arm.task.units)
     return [

@@ -7,17 +7,14 @@ from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Group, Parameter
-from rich.console import RenderableType
 
 from flexbase.cli.options.common import blaming, option
 from flexbase.cli.options.elbow import Elbow as Elbow
 from flexbase.cli.options.words import Vector, numbers
-from flexbase.cli.terminal.show import facts
 from flexbase.control.compensator import Compensator, load_compensator
 from flexbase.errors import InputError
 from flexbase.model.loop import loop_on
 from flexbase.plant import Plant, Pose
-from flexbase.sheets.numbers import listed
 
 Robot = Annotated[str, Parameter(help="bundled name (see: flexbase robots) or path of a project file")]
 POSE = Group("Pose", sort_key=10)
@@ -57,7 +54,7 @@ class PoseOptions:
 def tip_pose(plant: Plant, option: str, tip: Vector, elbow: str | None, near: Pose | Compensator | None = None) -> Pose:
     """The pose at a tip target, of several the nearest to `near`; a fault names the option. Raises InputError."""
     with blaming(option):
-        return plant.at_tip(tip, elbow, near.q[plant.arm.m :] if near and len(near.q) == plant.arm.N else None)
+        return plant.at_tip(tip, elbow, plant.arm.parts.arm(near.q) if near and len(near.q) == plant.arm.N else None)
 
 
 def compensator_of(plant: Plant, path: Path | None) -> Compensator | None:
@@ -68,12 +65,3 @@ def compensator_of(plant: Plant, path: Path | None) -> Compensator | None:
         found = load_compensator(path)
         loop_on(plant.arm, found)
     return found
-
-
-def where(pose: Pose) -> RenderableType:
-    """The pose in two lines."""
-    chain, task = pose.arm.mechanism, pose.arm.task
-    kinds = ["rad" if kind == "revolute" else "m" for kind in chain.joint_types]
-    return facts(
-        [("joints", listed(pose.q, chain.joint_names, kinds)), ("tip", listed(pose.tip, task.rows, task.units))]
-    )

@@ -32,7 +32,7 @@ def _joints(found: Description) -> RenderableType:
 
 def _project(found: Description) -> list[tuple[str, object]]:
     arm, gains, rows = found.plant.arm, found.plant.arm.gains, found.plant.arm.task.units
-    base = [(joint["name"], joint["unit"]) for joint in found.joints[: arm.m]]
+    base = [(joint["name"], joint["unit"]) for joint in found.joints if joint["part"] == "base"]
     names, kinds = [name for name, _ in base], [kind for _, kind in base]
     said: list[tuple[str, object]] = [("task rows", f"{' '.join(arm.task.rows)}, elbow {arm.task.branch}")]
     if arm.m:

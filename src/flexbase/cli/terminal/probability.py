@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 from rich.console import RenderableType
 
-from flexbase.cli.options.pose import where
 from flexbase.cli.terminal.out import PICTURES, write_out
 from flexbase.cli.terminal.show import facts, table, title
 from flexbase.plant import Plant, Pose
@@ -31,7 +30,7 @@ def tables(found: Probability, place: Plant | Pose) -> list[RenderableType]:
         rows = [_row("all", found.at_pose), *(_row(name, one) for name, one in found.by_criterion.items())]
         numbers = table(["criterion", "probability", "from", "to"], rows)
         holds = "holds" if found.dataset["nominal"].values.item() else "does not hold"
-        return [heading, "", where(place), "", facts([*asked, ("unvaried", holds)]), numbers, COVERS]
+        return [heading, "", facts(place.where.rows), "", facts([*asked, ("unvaried", holds)]), numbers, COVERS]
     status = found.dataset["status"].values
     cells = [(meaning, f"{count} cells") for code, meaning in STATUS.items() if (count := np.sum(status == code))]
     cells.append(("unvaried", f"holds in {int(found.dataset['nominal'].values.sum())} cells"))

@@ -29,7 +29,7 @@ def points(found: RobustPoints) -> list[RenderableType]:
     said += [("largest |a/|a| - b/|b||", number(found.residual, 2))] if len(found.joints) else []
     said += [("nearest alignment", number(found.nearest, 6))] if found.nearest is not None else []
     arm = found.plant.arm
-    names = [*arm.mechanism.joint_names[arm.m :], *(f"{row} of the tip" for row in arm.task.rows)]
+    names = [*arm.joint_names, *(f"{row} of the tip" for row in arm.task.rows)]
     both = [*found.joints.T, *found.tip.T] if len(found.joints) else []
     rows = [[name, number(min(v), 5), number(max(v), 5)] for name, v in zip(names, both, strict=False)]
     return ["", facts(said), *([table(["of the postures", "least", "largest"], rows)] if rows else [])]

@@ -13,12 +13,12 @@ from flexbase.simulation import Run
 def tables(found: Run) -> list[RenderableType]:
     """Heading, peak torques and speeds, times and errors, and whether the tip settles."""
     arm = found.goal.arm
-    kinds = ["rad" if kind == "revolute" else "m" for kind in arm.mechanism.joint_types[arm.m :]]
+    kinds = arm.joint_units
     torque, speed = units.each("effort", kinds), units.each("speed", kinds)
     rows = [
         [name, f"{number(t, 6)} {t_unit}", f"{number(s, 6)} {s_unit}"]
         for name, t, t_unit, s, s_unit in zip(
-            arm.mechanism.joint_names[arm.m :], found.peak_torque, torque, found.peak_speed, speed, strict=True
+            arm.joint_names, found.peak_torque, torque, found.peak_speed, speed, strict=True
         )
     ]
     unit = "mm (or mrad)" if "rad" in arm.task.units else "mm"

@@ -12,7 +12,6 @@ import numpy as np
 
 from flexbase.checks import Array, positive_number
 from flexbase.errors import InputError
-from flexbase.linear.margins import arm_on_free_base
 from flexbase.plant import Pose
 
 RADIUS = 0.9  # default bound on the algebraic loop's radius
@@ -49,9 +48,8 @@ def checked_radius(radius: object) -> float:
 
 def mobility_box(pose: Pose, radius: float) -> Box:
     """The box of a pose. Assumes 0 < radius < 1."""
-    m = pose.arm.m
-    L = np.asarray(np.linalg.cholesky(pose.M[m:, m:]), dtype=float)
-    F = np.linalg.solve(L, np.linalg.solve(L, arm_on_free_base(pose)).T)
+    L = np.asarray(np.linalg.cholesky(pose.Mhat), dtype=float)
+    F = np.linalg.solve(L, np.linalg.solve(L, pose.Ms).T)
     eye = np.eye(len(L))
     lower, upper = (np.linalg.inv(eye + sign * radius * INSIDE * 0.5 * (F + F.T)) for sign in (1.0, -1.0))
     return Box(L, 0.5 * (lower + lower.T), 0.5 * (upper + upper.T))
@@ -62,7 +60,7 @@ class BoundedGain:
 
     def __init__(self, pose: Pose, radius: float) -> None:
         self.g = radius * INSIDE
-        self.Ls = np.linalg.cholesky(arm_on_free_base(pose))
+        self.Ls = np.linalg.cholesky(pose.Ms)
 
     def at(self, W: Array) -> tuple[Array, Array, Array]:
         """E at W; the eigenvectors of W, and the angles whose tangents are its eigenvalues, for `pull_back`."""

@@ -57,7 +57,7 @@ def checked_law(lag: object, share: object) -> LagLaw | None:
 
 def pumping(pose: Pose, E: Array) -> Pumping:
     """Damping of the modes under E, and how fast a lag takes it. Assumes a compliant base and M - E > 0."""
-    reduced, base, Mhat = reduced_arrays(pose, E), pose.arm.base, pose.M[pose.arm.m :, pose.arm.m :]
+    reduced, base, Mhat = reduced_arrays(pose, E), pose.arm.base, pose.Mhat
     squares, shapes = scipy.linalg.eigh(base.stiffness, reduced.S)
     follow = -reduced.W @ shapes  # phi_a
     form, size = (np.einsum("ij,ik,kj->j", follow, A, follow) for A in (E, Mhat))
@@ -124,7 +124,7 @@ def fastest(law: LagLaw, pose: Pose, cost: float) -> float:
 
     cost : (t^T Mhat t) / (y.t)^2, shape-free; above 1/Mpp
     """
-    base, inertia = pose.arm.base, float(pose.M[0, 0])
+    base, inertia = pose.arm.base, float(pose.Mpp[0, 0])
     r = float(relief(law, base.damping[0, 0], base.stiffness[0, 0]))
     root = float(np.sqrt((1.0 - r) ** 2 + 4.0 * cost * r * inertia))
     driven = (1.0 - r + root) / (2.0 * cost) if r < 1.0 else 2.0 * r * inertia / (r - 1.0 + root)

@@ -35,8 +35,8 @@ def working_damping(pose: Pose) -> Array:
 
     Without damping every shortage is infinite: the weights 1/(zeta omega) then only rank the modes.
     """
-    base, m = pose.arm.base, pose.arm.m
-    stiffness, shapes = scipy.linalg.eigh(base.stiffness, pose.M[:m, :m])
+    base = pose.arm.base
+    stiffness, shapes = scipy.linalg.eigh(base.stiffness, pose.Mpp)
     ratios = np.diag(shapes.T @ base.damping @ shapes) / (2.0 * np.sqrt(stiffness))
     if ratios.min() >= UNDAMPED:
         return base.damping

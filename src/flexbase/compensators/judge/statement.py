@@ -27,7 +27,7 @@ def statement(pose: Pose, E: Array) -> str:
         return f"positive real: the base is rigid{scope}"
     reduced, base = reduced_arrays(pose, E), pose.arm.base
     shapes = scipy.linalg.eigh(base.stiffness, reduced.S)[1]
-    betas = _betas(pose.J[:, : pose.arm.m] @ shapes, reduced.V @ shapes)
+    betas = _betas(pose.Jp @ shapes, reduced.V @ shapes)
     if betas is not None:
         if _one_beta(pose, reduced, betas):
             return f"positive real at any damping of the base: V = beta Jp, beta = {betas.mean():.4g}{scope}"
@@ -54,7 +54,7 @@ def _betas(moved: Array, driven: Array) -> Array | None:
 
 def _one_beta(pose: Pose, reduced: ReducedArrays, betas: Array) -> bool:
     """Whether V = beta Jp as a whole."""
-    beta, Jp = float(betas.mean()), pose.J[:, : pose.arm.m]
+    beta, Jp = float(betas.mean()), pose.Jp
     same = float(np.ptp(betas)) <= ALIKE * max(1.0, abs(beta))
     return same and bool(np.linalg.norm(reduced.V - beta * Jp) <= ALIGNED * max(1.0, abs(beta)) * np.linalg.norm(Jp))
 

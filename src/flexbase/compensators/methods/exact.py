@@ -15,7 +15,6 @@ from flexbase.compensators.registry import method
 from flexbase.control.compensator import Compensator
 from flexbase.errors import Infeasible, InputError
 from flexbase.linear.aligned_gain import least_gain
-from flexbase.linear.margins import arm_on_free_base
 from flexbase.linear.modal import modes
 from flexbase.measures.compensability import coupling
 from flexbase.measures.exact_design import CLEARANCE, RAISE
@@ -50,8 +49,8 @@ def compensability(pose: Pose) -> Compensability:
         raise InputError(
             f"compensability: {pose.arm.k} task rows for {pose.arm.n} arm joints; as many rows as joints are needed."
         )
-    z, y, product = coupling(pose.M.tolist(), pose.J.tolist())
-    remaining = float(pose.M[0, 0]) + min(product, 0.0)
+    z, y, product = coupling(pose.M.tolist(), pose.J.tolist(), pose.arm.parts)
+    remaining = float(pose.Mpp[0, 0]) + min(product, 0.0)
     solvable = product != 0.0 and remaining > 0.0
     slowest = float(np.sqrt(pose.arm.base.stiffness[0, 0] / remaining)) if solvable else float("inf")
     return Compensability(np.array(z), np.array(y), product, slowest)
@@ -83,11 +82,11 @@ def exact(
     facts, frequency = (_redundant if pose.arm.n > pose.arm.k else _square)(pose, natural_frequency, law)
     alpha = _alpha(pose, facts, frequency)
     if objective == "least-gain":
-        E: Array = np.array(least_gain(pose.M[1:, 1:].tolist(), facts.z.tolist(), facts.y.tolist(), alpha))
+        E: Array = np.array(least_gain(pose.Mhat.tolist(), facts.z.tolist(), facts.y.tolist(), alpha))
     else:
         E = _least_radius(pose, facts, alpha)
     check_obeyed(law, pose, E)
-    residual = (pose.M[1:, 1:] - E) @ facts.z - facts.y / alpha
+    residual = (pose.Mhat - E) @ facts.z - facts.y / alpha
     relative = float(np.linalg.norm(residual) / np.linalg.norm(facts.y / alpha))
     return certify(pose, "exact", E, target_residual=relative, loop=loop)
 
@@ -113,7 +112,7 @@ def _compensable(pose: Pose) -> Compensability:
     if not np.isfinite(facts.slowest):
         raise Infeasible(
             f"no gain aligns the mode here: y.z = {facts.product:.4g} kg m^2 lies neither above 0 nor between "
-            f"-{pose.M[0, 0]:.4g} and 0. Choose another pose: a map of the measure compensability shows where."
+            f"-{pose.Mpp[0, 0]:.4g} and 0. Choose another pose: a map of the measure compensability shows where."
         )
     return facts
 
@@ -122,7 +121,7 @@ def _fastest(pose: Pose, facts: Compensability, law: LagLaw | None) -> float:
     """Y y = alpha z whatever the objective, so the law is one of alpha alone.  [theory §8]"""
     if law is None:
         return float("inf")
-    return fastest(law, pose, float(facts.z @ pose.M[1:, 1:] @ facts.z) / facts.product**2)
+    return fastest(law, pose, float(facts.z @ pose.Mhat @ facts.z) / facts.product**2)
 
 
 def _square(pose: Pose, natural_frequency: float | None, law: LagLaw | None) -> tuple[Compensability, float]:
@@ -148,9 +147,9 @@ def _check_lag_allows(frequency: float, slowest: float, highest: float, law: Lag
 def _redundant(pose: Pose, natural_frequency: float | None, law: LagLaw | None) -> tuple[Compensability, float]:
     """The same with more arm joints than task rows: V = beta Jp reads X t = y, Jv t = alpha Jp, with beta = -alpha."""
     _check_base(pose)
-    if not np.abs(pose.J[:, 0]).max() > STILL * np.abs(pose.J).max():
+    if not np.abs(pose.Jp[:, 0]).max() > STILL * np.abs(pose.J).max():
         raise Infeasible("exact: the base does not move the tip here, so there is nothing to align. No gain is needed.")
-    slowest = float(np.sqrt(pose.arm.base.stiffness[0, 0] / pose.M[0, 0]))
+    slowest = float(np.sqrt(pose.arm.base.stiffness[0, 0] / pose.Mpp[0, 0]))
     if natural_frequency is None:
         usual = RAISE * modes(pose)[0].frequency
         frequency = usual if law is None else within(lagged_bands(pose, law), usual)
@@ -158,7 +157,7 @@ def _redundant(pose: Pose, natural_frequency: float | None, law: LagLaw | None) 
         frequency = positive_number("natural frequency", natural_frequency, "rad/s")
     _check_reachable(pose, frequency, slowest)
     t, alpha = freest(pose, frequency, law)
-    return Compensability(t / alpha, -pose.M[1:, 0], float(-pose.M[1:, 0] @ t) / alpha, slowest), frequency
+    return Compensability(t / alpha, -pose.Map[:, 0], float(-pose.Map[:, 0] @ t) / alpha, slowest), frequency
 
 
 def _check_base(pose: Pose) -> None:
@@ -178,7 +177,7 @@ def _default_frequency(pose: Pose, facts: Compensability) -> float:
 def _alpha(pose: Pose, facts: Compensability, frequency: float) -> float:
     """alpha = (Mpp - Kp/omega^2) / (y.z): X z = y/alpha then meets both targets.  [theory §7]"""
     _check_reachable(pose, frequency, facts.slowest)
-    return float((pose.M[0, 0] - pose.arm.base.stiffness[0, 0] / frequency**2) / facts.product)
+    return float((pose.Mpp[0, 0] - pose.arm.base.stiffness[0, 0] / frequency**2) / facts.product)
 
 
 def _check_reachable(pose: Pose, frequency: float, slowest: float) -> None:
@@ -197,12 +196,12 @@ def _least_radius(pose: Pose, facts: Compensability, alpha: float) -> Array:
     symmetric F does that with a smaller norm than the ratio of their lengths, and the reflection that maps one
     direction onto the other, times that ratio, attains it.
     """
-    L = np.linalg.cholesky(arm_on_free_base(pose))
-    start, goal = L.T @ facts.z, np.linalg.solve(L, pose.M[1:, 1:] @ facts.z - facts.y / alpha)
+    L = np.linalg.cholesky(pose.Ms)
+    start, goal = L.T @ facts.z, np.linalg.solve(L, pose.Mhat @ facts.z - facts.y / alpha)
     radius = float(np.linalg.norm(goal) / np.linalg.norm(start))
     F = radius * _symmetric_turn(start / np.linalg.norm(start), goal)
     E = L @ F @ L.T
-    if np.linalg.eigvalsh(pose.M[1:, 1:] - E)[0] <= 0.0:
+    if np.linalg.eigvalsh(pose.Mhat - E)[0] <= 0.0:
         raise Infeasible(
             f"the smallest algebraic-loop radius at this frequency is {radius:.3f}, where M - E is no longer positive. "
             "Ask for a lower frequency, or for the objective least-gain."

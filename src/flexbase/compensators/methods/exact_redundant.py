@@ -8,7 +8,6 @@ import scipy.linalg
 from flexbase.checks import Array
 from flexbase.compensators.judge.lag_law import LagLaw, relief, words
 from flexbase.errors import Infeasible
-from flexbase.linear.margins import arm_on_free_base
 from flexbase.plant import Pose
 
 BORDER = 0.1  # distance of alpha from [-1, 0], where the mode would be lost to force or tip
@@ -20,7 +19,7 @@ BISECTIONS = 60  # between the least radius and the least pumping
 
 def motions(pose: Pose) -> Array:
     """The span of t: one z, and the arm's self-motions, as columns."""
-    return np.column_stack([np.linalg.pinv(pose.J[:, 1:]) @ pose.J[:, 0], _null_space(pose.J[:, 1:])])
+    return np.column_stack([np.linalg.pinv(pose.Jv) @ pose.Jp[:, 0], _null_space(pose.Jv)])
 
 
 def lagged_bands(pose: Pose, law: LagLaw) -> list[tuple[float, float]]:
@@ -30,13 +29,13 @@ def lagged_bands(pose: Pose, law: LagLaw) -> list[tuple[float, float]]:
     law Q - (1 - r) sigma <= r Mpp an ellipse; alpha cuts a piece off on either side, and sigma runs between the ends of
     that piece.  [theory §8]
     """
-    M, base, motion = pose.M, pose.arm.base, motions(pose)
-    chosen = np.vstack([np.eye(motion.shape[1])[0], -motion.T @ M[1:, 0]])  # alpha and sigma of a t
+    base, motion = pose.arm.base, motions(pose)
+    chosen = np.vstack([np.eye(motion.shape[1])[0], -motion.T @ pose.Map[:, 0]])  # alpha and sigma of a t
     if np.linalg.matrix_rank(chosen) < 2:
         return []
-    inertia, stiffness = float(M[0, 0]), float(base.stiffness[0, 0])
+    inertia, stiffness = float(pose.Mpp[0, 0]), float(base.stiffness[0, 0])
     r = float(relief(law, base.damping[0, 0], stiffness))
-    inverse = chosen @ np.linalg.solve(motion.T @ M[1:, 1:] @ motion, chosen.T)
+    inverse = chosen @ np.linalg.solve(motion.T @ pose.Mhat @ motion, chosen.T)
     Q = np.linalg.inv(inverse)
     centre = 0.5 * (1.0 - r) * inverse[:, 1]
     size = float(np.sqrt(r * inertia + centre @ Q @ centre))
@@ -74,12 +73,12 @@ def freest(pose: Pose, frequency: float, law: LagLaw | None) -> tuple[Array, flo
     lie outside [-1, 0]; where the best t's does not, t is best on one of the borders, kept BORDER away.
     The delay law bounds t^T Mhat t, and so is one more quadratic form. Raises Infeasible.
     """
-    Mhat, y = pose.M[1:, 1:], -pose.M[1:, 0]
+    Mhat, y = pose.Mhat, -pose.Map[:, 0]
     stiffness, damping = float(pose.arm.base.stiffness[0, 0]), float(pose.arm.base.damping[0, 0])
-    inertia = float(pose.M[0, 0] - stiffness / frequency**2)
+    inertia = float(pose.Mpp[0, 0] - stiffness / frequency**2)
     span, pump = motions(pose), None
     if law is not None:  # t^T Mhat t - sigma <= r (Mpp - sigma), homogeneous in t
-        allowed = inertia + relief(law, damping, stiffness) * (pose.M[0, 0] - inertia)
+        allowed = inertia + relief(law, damping, stiffness) * (pose.Mpp[0, 0] - inertia)
         pump = Mhat - allowed / inertia**2 * np.outer(y, y)
     driven, first = span.T @ y, np.eye(span.shape[1])[0]
     borders = [inertia * first - alpha * driven for alpha in (BORDER, -1.0 - BORDER)]
@@ -110,7 +109,7 @@ def _least_turned(pose: Pose, basis: Array, turn: Array, pump: Array | None) -> 
     turn t = Ms t wherever y.t = 0, so 1 is only a limit, of ever larger self-motions (a low frequency). Then the t that
     drives the base most for its inertia is taken. Where that breaks t^T pump t <= 0, the best t that does not, or None.
     """
-    Ms, y = arm_on_free_base(pose), -pose.M[1:, 0]
+    Ms, y = pose.Ms, -pose.Map[:, 0]
     image, weight = turn @ basis, basis.T @ Ms @ basis
     square = image.T @ np.linalg.solve(Ms, image)
     values, vectors = scipy.linalg.eigh(square, weight)

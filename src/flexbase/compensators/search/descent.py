@@ -19,10 +19,9 @@ SATURATION = 0.95  # share of the bound up to which a given gain is taken over a
 
 def shortage_and_slope(pose: Pose, E: Array) -> tuple[float, Array]:
     """The modal shortage of a gain and its slope dJ/dE, symmetric, shape (n, n). Assumes M - E > 0."""
-    m = pose.arm.m
     reduced = reduced_arrays(pose, E)
-    here = modal_shortage(pose.J[:, :m], reduced.V, reduced.S, working_damping(pose), pose.arm.base.stiffness)
-    force = np.linalg.solve(pose.M[m:, m:] - E, pose.J[:, m:].T)
+    here = modal_shortage(pose.Jp, reduced.V, reduced.S, working_damping(pose), pose.arm.base.stiffness)
+    force = np.linalg.solve(pose.Mhat - E, pose.Jv.T)
     slope = force @ here.slope_V @ reduced.W.T - reduced.W @ here.slope_S @ reduced.W.T  # d(X^-1) = X^-1 dE X^-1
     return here.value, 0.5 * (slope + slope.T)
 

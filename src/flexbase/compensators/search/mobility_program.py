@@ -67,9 +67,9 @@ class MobilityProgram:
         self.pose, self.radius, self.lowest, self.highest = pose, radius, lowest, highest
         m = pose.arm.m
         self.box = mobility_box(pose, radius)
-        self.A = np.linalg.solve(self.box.L, pose.J[:, m:].T).T  # V = A Z B
-        self.B = np.linalg.solve(self.box.L, pose.M[m:, :m])  # S = Mpp - B^T Z B
-        self.Jp, self.Mpp, self.Kp = pose.J[:, :m], pose.M[:m, :m], pose.arm.base.stiffness
+        self.A = np.linalg.solve(self.box.L, pose.Jv.T).T  # V = A Z B
+        self.B = np.linalg.solve(self.box.L, pose.Map)  # S = Mpp - B^T Z B
+        self.Jp, self.Mpp, self.Kp = pose.Jp, pose.Mpp, pose.arm.base.stiffness
         tip, base = np.linalg.cholesky(self.A @ self.A.T), np.linalg.cholesky(self.Mpp)
         self.rows = np.linalg.inv(tip) @ self.A
         self.columns = np.linalg.solve(base, self.B.T).T

@@ -28,7 +28,7 @@ def mode_parameters(pose: Pose, E: Array) -> ModeParameters:
     Raises Infeasible if M - E is not positive definite or the base is overdamped.
     """
     arm = pose.arm
-    X = pose.M[arm.m :, arm.m :] - E
+    X = pose.Mhat - E
     reduced = reduced_arrays(pose, E)
     if min(np.linalg.eigvalsh(X)[0], np.linalg.eigvalsh(reduced.S)[0]) <= 0.0:
         raise Infeasible("M - E is no longer positive definite.")
@@ -59,9 +59,8 @@ def parameter_slopes(pose: Pose, E: Array, here: ModeParameters) -> Array:
     psi^T (2 l S + Dp) psi = 1; assumes distinct poles and w_i below the other eigenvalues of R_i + R_i^T.
     """
     m, n = pose.arm.m, pose.arm.n
-    Jv, Map = pose.J[:, m:], pose.M[m:, :m]
-    Y = np.linalg.inv(pose.M[m:, m:] - E)
-    left, right = Jv @ Y, Y @ Map
+    Y = np.linalg.inv(pose.Mhat - E)
+    left, right = pose.Jv @ Y, Y @ pose.Map
     directions = [symmetric(unit, n) for unit in np.eye(n * (n + 1) // 2)]
     changes_of_V = [left @ dE @ right for dE in directions]  # d(X^-1) = X^-1 dE X^-1
     changes_of_S = [-right.T @ dE @ right for dE in directions]

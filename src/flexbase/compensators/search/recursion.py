@@ -91,7 +91,7 @@ def _check_options(pose: Pose, method: str, step: float, iterations: int, seed: 
 def _estimate(pose: Pose, E: Array, now: ModeParameters, H: Array, rng: np.random.Generator) -> Array:
     """H <- H + (Y - H X) X^+ from small random variations X of rho and the changes Y they cause.  [U03 eq 16]"""
     rho = upper_triangle(E)
-    left = modified_inertia(pose, E)[pose.arm.m :, pose.arm.m :]
+    left = pose.Mhat - E
     size = TRIAL * float(np.linalg.eigvalsh(left)[0])
     X = size * rng.standard_normal((len(rho), len(rho)))
     moved = [mode_parameters(pose, symmetric(rho + variation, pose.arm.n)).values - now.values for variation in X.T]

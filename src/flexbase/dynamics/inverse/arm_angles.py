@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexbase.checks import Array
-from flexbase.dynamics.inverse.branches import NAMES, elbow_of, inside_branch, matching, places
-from flexbase.dynamics.inverse.newton import TOLERANCE, TipProblem, newton, reach, solve_rows
+from flexbase.dynamics.inverse.branches import NAMES, inside_branch, matching, places
+from flexbase.dynamics.inverse.newton import TOLERANCE, TipProblem, solve_rows
 from flexbase.dynamics.inverse.posture_criteria import Criterion, isotropy
 from flexbase.dynamics.inverse.posture_map import best_postures
 from flexbase.dynamics.inverse.self_motion import best_posture
@@ -19,8 +19,6 @@ from flexbase.dynamics.inverse.two_joint_arm import TwoJointArm, solve_two_joint
 from flexbase.errors import InputError
 from flexbase.model.mechanism import Mechanism
 from flexbase.model.task import BRANCHES, Task
-
-__all__ = ["Solution", "arm_angles", "arm_angles_of_many", "arm_solutions", "elbow_of", "newton", "reach"]
 
 FEW_STARTS = 8
 STRETCHED = 1.0 + 1e-12  # cosine of the elbow, to rounding, at the edge of reach
@@ -67,18 +65,19 @@ def arm_angles(
         if solutions:
             gaps = [0.0 if near is None else float(np.linalg.norm(one.joints - near)) for one in solutions]
             return solutions[int(np.argmin(gaps))].joints, 0.0
-    n, m = mechanism.N - len(base_rest), len(base_rest)
+    n = mechanism.N - len(base_rest)
     if n > task.k and near is None:
         best = best_posture(
             mechanism, task, base_rest, target, criterion or isotropy(mechanism, task, base_rest), branch
         )
         if best is not None:
             return best.joints, 0.0
-    starts = spread_starts(mechanism, m, branch, STARTS)
+    problem = TipProblem(mechanism, task, base_rest)
+    starts = spread_starts(mechanism, problem.parts, branch, STARTS)
     if near is not None:
         starts[0] = near
-    found, errors = newton(mechanism, task, base_rest, starts, target)
-    good = (errors <= TOLERANCE * reach(mechanism)) & inside(found)
+    found, errors = solve_rows(problem, starts, target)
+    good = (errors <= TOLERANCE * problem.scale) & inside(found)
     if not good.any() or six is not None:
         return None, float(errors.min())
     centre = np.zeros(n) if near is None else near
@@ -109,7 +108,7 @@ def arm_solutions(mechanism: Mechanism, task: Task, base_rest: Array, target: Ar
     if six is not None:
         return _six_solutions(six, mechanism, task, base_rest, target)
     problem = TipProblem(mechanism, task, base_rest)
-    starts = np.concatenate([spread_starts(mechanism, problem.m, sign, STARTS) for sign in BRANCHES[:2]])
+    starts = np.concatenate([spread_starts(mechanism, problem.parts, sign, STARTS) for sign in BRANCHES[:2]])
     found, errors = solve_rows(problem, starts, target)
     rows = _distinct(problem, found[errors <= TOLERANCE * problem.scale])
     plus = inside_branch(mechanism, base_rest, "+")(rows)
@@ -146,7 +145,7 @@ def arm_angles_of_many(
         candidates, exists = _six_candidates(six, problem, targets)
         tries = [(candidates[:, i], exists[:, i]) for i in matching(branch)]
     else:
-        starts = spread_starts(mechanism, problem.m, branch, FEW_STARTS)
+        starts = spread_starts(mechanism, problem.parts, branch, FEW_STARTS)
         tries = [(np.broadcast_to(start, joints.shape), np.ones(len(targets), dtype=bool)) for start in starts]
     for begin, offered in tries:
         cells = np.flatnonzero(~reached & offered)
@@ -188,7 +187,8 @@ def _six_solutions(
     raw, exists = solve_six_joint_arm(six, aim.position, aim.rotation)
     starts = raw[0][exists[0]]
     if six.distance > ROUNDED:  # two candidates may merge where the arm itself has two solutions
-        starts = np.concatenate([starts, *(spread_starts(mechanism, problem.m, sign, STARTS) for sign in BRANCHES[:2])])
+        more = [spread_starts(mechanism, problem.parts, sign, STARTS) for sign in BRANCHES[:2]]
+        starts = np.concatenate([starts, *more])
     found, errors = solve_rows(problem, starts, target)
     rows = _distinct(problem, found[errors <= TOLERANCE * problem.scale])
     place = places(six, rows)

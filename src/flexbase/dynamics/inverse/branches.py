@@ -11,6 +11,7 @@ from flexbase.checks import Array
 from flexbase.dynamics.inverse.six_joint_arm import SixJointArm, branch_signs, six_joint_arm
 from flexbase.errors import InputError
 from flexbase.model.mechanism import Mechanism
+from flexbase.model.parts import base_first
 
 NAMES = tuple(a + b + c for a in "+-" for b in "+-" for c in "+-")  # shoulder, elbow, wrist
 Inside = Callable[[Array], NDArray[np.bool_]]
@@ -37,8 +38,9 @@ def inside_branch(mechanism: Mechanism, base_rest: Array, branch: str) -> Inside
     plus = branch == "+"
     if six is not None:
         return lambda joints: np.asarray((branch_signs(six, joints)[:, 1] >= 0.0) == plus)
-    elbow = elbow_of(mechanism.N - len(base_rest))
-    if elbow is None or mechanism.joint_types[len(base_rest) + elbow] != "revolute":
+    kinds = base_first(len(base_rest), mechanism.N).arm(mechanism.joint_types)
+    elbow = elbow_of(len(kinds))
+    if elbow is None or kinds[elbow] != "revolute":
         return lambda joints: np.ones(len(joints), dtype=bool)
     return lambda joints: np.asarray((np.sin(joints[:, elbow]) >= 0.0) == plus)
 
@@ -58,9 +60,8 @@ def _signs(branch: str) -> NDArray[np.bool_]:
 
 
 def _why_unnamed(mechanism: Mechanism, base_rest: Array) -> str:
-    n = mechanism.N - len(base_rest)
-    kinds = mechanism.joint_types[len(base_rest) :]
-    if n != 6 or "prismatic" in kinds:
+    kinds = base_first(len(base_rest), mechanism.N).arm(mechanism.joint_types)
+    if len(kinds) != 6 or "prismatic" in kinds:
         return f"shoulder, elbow and wrist are named on six revolute joints, and the arm has {', '.join(kinds)}"
     return (
         "neither are axes 2, 3, 4 parallel with axes 5, 6 meeting, nor do axes 4, 5, 6 meet in a point "

@@ -10,6 +10,7 @@ from flexbase.checks import Array
 from flexbase.dynamics.kinematics import forward, task_jacobian
 from flexbase.dynamics.task import Target, target_at, task_error, task_value
 from flexbase.model.mechanism import Mechanism
+from flexbase.model.parts import base_first
 from flexbase.model.task import Task
 from flexbase.trace.algebra import stack, unstack
 
@@ -36,10 +37,10 @@ class TipProblem:
     def __init__(self, mechanism: Mechanism, task: Task, base_rest: Array) -> None:
         self.mechanism, self.task = mechanism, task
         self.base = tuple(map(float, base_rest))
-        self.m, self.n = len(base_rest), mechanism.N - len(base_rest)
+        self.parts, self.n = base_first(len(base_rest), mechanism.N), mechanism.N - len(base_rest)
         self.open_rotation = open_rotation(mechanism, task, base_rest)
-        self.scale = reach(mechanism)
-        self.revolute = np.array([kind == "revolute" for kind in mechanism.joint_types[self.m :]])
+        self.scale = mechanism.reach
+        self.revolute = np.array([kind == "revolute" for kind in self.parts.arm(mechanism.joint_types)])
 
     def aim(self, targets: Array, rows: int) -> Target:
         """Targets as tool frames, one for each of `rows`."""
@@ -53,27 +54,22 @@ class TipProblem:
         return np.concatenate([error for error, _ in parts]), np.concatenate([J for _, J in parts])
 
     def _residual(self, joints: Array, aim: Target) -> tuple[Array, Array]:
-        frames = forward(self.mechanism, (*self.base, *unstack(joints, 1)))
+        frames = forward(self.mechanism, self.parts.whole(self.base, unstack(joints, 1)))
         if not self.open_rotation:
-            J = stack(task_jacobian(frames, self.task.indices))[..., self.m :]
+            J = self.parts.arm(stack(task_jacobian(frames, self.task.indices)))
             return task_error(frames, self.task, aim), np.broadcast_to(J, (len(joints), *J.shape[-2:])).copy()
         rows = list(self.task.indices)
         full = np.broadcast_to(stack(task_jacobian(frames, tuple(range(6)))), (len(joints), 6, self.mechanism.N)).copy()
         vector = Rotation.from_matrix(stack(frames.tool_rotation)).as_rotvec()
         full[:, 3:] = rotation_vector_slope(np.broadcast_to(vector, (len(joints), 3))) @ full[:, 3:]
         wanted = np.concatenate([aim.position, Rotation.from_matrix(aim.rotation).as_rotvec()], axis=-1)[:, rows]
-        return task_value(frames, self.task) - wanted, full[:, rows, self.m :]
+        return task_value(frames, self.task) - wanted, self.parts.arm(full[:, rows])
 
     def wrapped(self, joints: Array) -> Array:
         """The same joints with the revolute ones in (-pi, pi]."""
         folded = joints.copy()
         folded[:, self.revolute] = np.pi - np.mod(np.pi - joints[:, self.revolute], 2.0 * np.pi)
         return folded
-
-
-def newton(mechanism: Mechanism, task: Task, base_rest: Array, starts: Array, target: Array) -> tuple[Array, Array]:
-    """Improve every row of `starts`, shape (S, n), towards one target or a target each; joints and remaining errors."""
-    return solve_rows(TipProblem(mechanism, task, base_rest), starts, target)
 
 
 def solve_rows(
@@ -148,16 +144,10 @@ def open_rotation(mechanism: Mechanism, task: Task, base_rest: Array) -> bool:
     rows = [row for row in task.indices if row >= 3]
     if len(rows) in (0, 3):
         return False
-    m = len(base_rest)
-    frames = forward(mechanism, (*map(float, base_rest), *(0.5,) * (mechanism.N - m)))
-    axes = np.array([motion.angular for motion in frames.motions[m:]])
+    parts = base_first(len(base_rest), mechanism.N)
+    frames = forward(mechanism, parts.whole(tuple(map(float, base_rest)), (0.5,) * len(parts.active)))
+    axes = np.array([motion.angular for motion in parts.arm(frames.motions)])
     others = [axis for axis in range(3) if axis + 3 not in rows]
     tool = stack(frames.tool_rotation)
     level = tool[rows[0] - 3, rows[0] - 3] >= 1.0 - 1e-12  # the tool is not tilted about another axis to start with
     return bool(len(rows) == 2 or np.abs(axes[:, others]).max(initial=0.0) > 1e-12 or not level)
-
-
-def reach(mechanism: Mechanism) -> float:
-    """Sum of all link offsets: no tip is farther out while prismatic joints stand at zero."""
-    offsets = np.linalg.norm(mechanism.placement_position, axis=1).sum()
-    return float(offsets + np.linalg.norm(mechanism.tool_position)) or 1.0

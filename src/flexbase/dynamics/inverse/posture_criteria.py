@@ -9,6 +9,7 @@ import numpy as np
 from flexbase.checks import Array
 from flexbase.dynamics.kinematics import forward, jacobian
 from flexbase.model.mechanism import Mechanism
+from flexbase.model.parts import base_first
 from flexbase.model.task import Task
 from flexbase.trace.algebra import stack, unstack
 
@@ -40,12 +41,13 @@ def isotropy(mechanism: Mechanism, task: Task, base_rest: Array) -> Criterion:
 
     base_rest : base joints, shape (m,)
     """
-    base, m, rows = tuple(map(float, base_rest)), len(base_rest), list(task.indices)
+    base, rows = tuple(map(float, base_rest)), list(task.indices)
+    parts = base_first(len(base), mechanism.N)
     k = len(rows)
 
     def criterion(joints: Array) -> tuple[Array, Array]:
-        frames = forward(mechanism, (*base, *unstack(joints, 1)))
-        full = np.broadcast_to(stack(jacobian(frames)), (len(joints), 6, mechanism.N))[..., m:]
+        frames = forward(mechanism, parts.whole(base, unstack(joints, 1)))
+        full = parts.arm(np.broadcast_to(stack(jacobian(frames)), (len(joints), 6, mechanism.N)))
         J = full[:, rows]
         gram = J @ np.swapaxes(J, 1, 2)
         sign, log_det = np.linalg.slogdet(gram)

@@ -70,7 +70,7 @@ def best_postures(
     count = len(targets)
     field = _Field(np.zeros((count, setting.problem.n)), np.full(count, -np.inf))
     places = targets / np.where([unit == "rad" for unit in task.units], 1.0, setting.problem.scale)
-    starts = spread_starts(mechanism, setting.problem.m, branch, GLOBAL_STARTS)
+    starts = spread_starts(mechanism, setting.problem.parts, branch, GLOBAL_STARTS)
     starts[:, idle_joints(setting.problem)] = 0.0
     order = np.random.default_rng(0).permutation(count)
     begin, size = 0, 1

@@ -64,7 +64,7 @@ def best_posture(
     """
     problem, inside = TipProblem(mechanism, task, base_rest), inside_branch(mechanism, base_rest, branch)
     if starts is None:
-        starts = spread_starts(mechanism, problem.m, branch, STARTS)
+        starts = spread_starts(mechanism, problem.parts, branch, STARTS)
         starts[:, idle_joints(problem)] = 0.0
     found, errors = solve_rows(problem, np.atleast_2d(starts), target)
     found = found[(errors <= TOLERANCE * problem.scale) & inside(found)]

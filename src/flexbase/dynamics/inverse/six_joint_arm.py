@@ -25,6 +25,7 @@ from flexbase.dynamics.inverse.subproblems import (
 )
 from flexbase.dynamics.kinematics import forward
 from flexbase.model.mechanism import Mechanism
+from flexbase.model.parts import base_first
 from flexbase.trace.algebra import stack
 
 CLOSE = 1e-2  # rad, and of the arm's size: so far a calibrated arm may be from its family; Newton steps do the rest
@@ -59,12 +60,12 @@ class SixJointArm(NamedTuple):
 
 def six_joint_arm(mechanism: Mechanism, base_rest: Array) -> SixJointArm | None:
     """The arm's geometry, or None where it is of neither family."""
-    m = len(base_rest)
-    if mechanism.N - m != 6 or "prismatic" in mechanism.joint_types[m:]:
+    parts = base_first(len(base_rest), mechanism.N)
+    if len(parts.active) != 6 or "prismatic" in parts.arm(mechanism.joint_types):
         return None
-    frames = forward(mechanism, (*map(float, base_rest), *(0.0,) * 6))
-    axes = np.array([motion.angular for motion in frames.motions[m:]])
-    points = np.cross(axes, np.array([motion.linear for motion in frames.motions[m:]]))
+    frames = forward(mechanism, parts.whole(tuple(map(float, base_rest)), (0.0,) * 6))
+    axes, along = (np.array(part) for part in zip(*parts.arm(frames.motions), strict=True))
+    points = np.cross(axes, along)
     tool = np.array(frames.tool_position)
     size = float(np.linalg.norm(points[1:] - points[:-1], axis=1).sum() + np.linalg.norm(tool - points[5])) or 1.0
     skew = [_skew(axes[i], axes[i + 1]) for i in range(5)]

@@ -9,6 +9,7 @@ import numpy as np
 from flexbase.checks import Array
 from flexbase.dynamics.kinematics import forward
 from flexbase.model.mechanism import Mechanism
+from flexbase.model.parts import base_first
 from flexbase.model.task import Task
 from flexbase.trace.algebra import Scalar, atan2, larger, smaller, sqrt
 
@@ -32,12 +33,12 @@ class TwoJointArm(NamedTuple):
 
 def two_joint_arm(mechanism: Mechanism, task: Task, base_rest: Array) -> TwoJointArm | None:
     """The arm's planar geometry, or None where it is not two parallel joints that move two task positions."""
-    m = len(base_rest)
-    rows = task.indices
-    if mechanism.N - m != 2 or len(rows) != 2 or max(rows) > 2 or "prismatic" in mechanism.joint_types[m:]:
+    parts, rows = base_first(len(base_rest), mechanism.N), task.indices
+    kinds = parts.arm(mechanism.joint_types)
+    if len(kinds) != 2 or len(rows) != 2 or max(rows) > 2 or "prismatic" in kinds:
         return None
-    frames = forward(mechanism, (*map(float, base_rest), 0.0, 0.0))
-    first, second = frames.motions[m:]
+    frames = forward(mechanism, parts.whole(tuple(map(float, base_rest)), (0.0, 0.0)))
+    first, second = parts.arm(frames.motions)
     normal = np.cross(np.eye(3)[rows[0]], np.eye(3)[rows[1]])
     axis = np.array(first.angular)
     sense = float(np.sign(axis @ normal))

@@ -108,11 +108,11 @@ def base_vibration(pose: Pose, loop: Asked = None, damping: Array | None = None)
 
     damping : instead of the base's own, shape (m, m)
     """
-    E, m, base = loop_on(pose.arm, loop).gain, pose.arm.m, pose.arm.base
+    E, base = loop_on(pose.arm, loop).gain, pose.arm.base
     check_definite_inertia(pose, E)
     reduced = reduced_arrays(pose, E)
-    carried = np.abs(pose.J[:, m:]) @ np.abs(reduced.W)
-    terms = np.abs(pose.J[:, :m]) + carried, carried.T
+    carried = np.abs(pose.Jv) @ np.abs(reduced.W)
+    terms = np.abs(pose.Jp) + carried, carried.T
     own = base.damping if damping is None else damping
     found = take_apart(reduced.S, own, base.stiffness, -reduced.V.T, reduced.U, terms)
     return found._replace(rigid=found.rigid + reduced.R0)

@@ -15,6 +15,7 @@ from flexbase.model.files.robot_table import inertia_matrix
 from flexbase.model.files.schema import BaseTable
 from flexbase.model.formats.chain import AT_ORIGIN, NOTHING, Foot, Place, welded
 from flexbase.model.mechanism import Body, Mechanism
+from flexbase.model.parts import base_first
 
 MOST_JOINTS = 6
 InertiaAt = Callable[[Mechanism, Array], Array]
@@ -144,7 +145,8 @@ def _springs(
         raise InputError(f"{where}frequency: frequencies must be above 0 and damping ratios 0 or more.")
     arm = check_length(f"{where}reference", table.reference or [0.0] * n, n, "one for each arm joint")
     check_within(f"{where}reference", arm, FARTHEST, "rad or m")
-    inertia = np.diag(inertia_at(mechanism, np.concatenate([equilibrium, arm])))[:m]
+    parts = base_first(m, mechanism.N)
+    inertia = parts.base(np.diag(inertia_at(mechanism, parts.whole(equilibrium, arm))))
     stiffness, damping = omega**2 * inertia, 2.0 * zeta * omega * inertia
     caution(
         f"{where}frequency: taken as stiffness {np.round(stiffness, 6).tolist()} and damping "

@@ -6,8 +6,9 @@ import numpy as np
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 from flexbase.checks import Array
+from flexbase.model.parts import Parts
 from flexbase.plant import Pose
-from flexbase.report.arm.planar import AXES, joint_points
+from flexbase.report.arm.planar import AXES, base_and_arm, joint_points
 from flexbase.report.style import GREY, INK, ORANGE
 
 FLAT = 0.02  # extent out of its plane, of the largest, up to which an arm is drawn in the plane
@@ -25,19 +26,27 @@ def leaves_plane(pose: Pose, plane: tuple[int, int]) -> bool:
 
 
 def draw_arm_in_space(
-    ax: Axes3D, points: Array, m: int, *, color: str = INK, alpha: float = 1.0, width: float = 2.6, joints: bool = True
+    ax: Axes3D,
+    points: Array,
+    parts: Parts,
+    *,
+    color: str = INK,
+    alpha: float = 1.0,
+    width: float = 2.6,
+    joints: bool = True,
 ) -> None:
     """Links as lines, arm joints as open circles, the base thick; points of shape (N + 1, 3)."""
-    ax.plot(*points[: m + 1].T, color=color, alpha=alpha, linewidth=2.0 * width, solid_capstyle="round")
-    ax.plot(*points[m:].T, color=color, alpha=alpha, linewidth=width, solid_capstyle="round")
+    base, arm = base_and_arm(points, parts)
+    ax.plot(*base.T, color=color, alpha=alpha, linewidth=2.0 * width, solid_capstyle="round")
+    ax.plot(*arm.T, color=color, alpha=alpha, linewidth=width, solid_capstyle="round")
     if joints:
-        ax.plot(*points[m:-1].T, "o", color=color, markerfacecolor="white", markersize=5.5)
+        ax.plot(*arm[:-1].T, "o", color=color, markerfacecolor="white", markersize=5.5)
 
 
 def draw_base_joints(ax: Axes3D, pose: Pose, size: float) -> None:
     """Each base joint by its axis, in orange: a line with two heads where it slides, a ring about it where it turns."""
     places, types = joint_points(pose), pose.arm.mechanism.joint_types
-    for i in range(pose.arm.m):
+    for i in pose.arm.parts.passive:
         motion = pose.frames.motions[i]
         slides = types[i] == "prismatic"
         axis = np.array(motion.linear if slides else motion.angular, dtype=float)
@@ -52,7 +61,7 @@ def draw_base_joints(ax: Axes3D, pose: Pose, size: float) -> None:
             ring = places[i] + 0.6 * size * (np.cos(angle) * aside + np.sin(angle) * np.cross(axis, aside))
             ax.plot(*ring.T, color=ORANGE, linewidth=1.8)
             ax.plot(*np.array([places[i] - size * axis, places[i] + size * axis]).T, color=ORANGE, linewidth=0.9)
-    ax.plot(*places[: pose.arm.m].T, "o", color=INK, markerfacecolor=ORANGE, markersize=7)
+    ax.plot(*places[list(pose.arm.parts.passive)].T, "o", color=INK, markerfacecolor=ORANGE, markersize=7)
 
 
 def arrow_in_space(ax: Axes3D, start: Array, span: Array, color: str) -> None:

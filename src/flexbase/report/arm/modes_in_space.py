@@ -44,10 +44,11 @@ def _panel(ax: Axes3D, result: Modes, mode: Mode | None) -> Array:
     mark = MARK * float(np.ptp(rest, axis=0).max())
     bent = [] if mode is None else swung(pose, mode)
     for points, color in zip(bent, (BLUE, SKY), strict=False):
-        draw_arm_in_space(ax, points, pose.arm.m, color=color, alpha=0.75, width=1.3, joints=False)
-    draw_arm_in_space(ax, rest, pose.arm.m)
+        draw_arm_in_space(ax, points, pose.arm.parts, color=color, alpha=0.75, width=1.3, joints=False)
+    draw_arm_in_space(ax, rest, pose.arm.parts)
     draw_base_joints(ax, pose, mark)
-    drawn = [rest, *bent, rest[: pose.arm.m] + mark, rest[: pose.arm.m] - mark]
+    base = rest[list(pose.arm.parts.passive)]
+    drawn = [rest, *bent, base + mark, base - mark]
     if mode is not None and _has_directions(result, mode):
         for span, color in zip(arrows(pose, mode), (RED, GREEN), strict=True):
             arrow_in_space(ax, rest[-1], span, color)
@@ -61,6 +62,6 @@ def _has_directions(result: Modes, mode: Mode) -> bool:
 
 def _signs(result: Modes) -> list[Line2D]:
     lines = signs(any(_has_directions(result, mode) for mode in result.modes[:MOST]))
-    slides = "prismatic" in result.pose.arm.mechanism.joint_types[: result.pose.arm.m]
+    slides = "prismatic" in result.pose.arm.parts.base(result.pose.arm.mechanism.joint_types)
     name = "base joint: ring turns, arrows slide" if slides else "base joint, turns about its axis"
     return [*lines, Line2D([], [], color=ORANGE, linewidth=1.8, label=name)]

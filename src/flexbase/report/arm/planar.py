@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 
 from flexbase.checks import Array
 from flexbase.dynamics.kinematics import forward
+from flexbase.model.parts import Parts
 from flexbase.plant import Pose
 from flexbase.report.style import INK, ORANGE
 
@@ -41,15 +42,28 @@ def drawing_plane(pose: Pose) -> tuple[int, int]:
     return rows[0], rows[1]
 
 
+def base_and_arm(points: Array, parts: Parts) -> tuple[Array, Array]:
+    """Points (N + 1, ...) of the base joints and the first arm joint; and of the arm joints and the tip."""
+    return points[[*parts.passive, parts.active[0]]], points[[*parts.active, -1]]
+
+
 def draw_arm(
-    ax: Axes, points: Array, m: int, *, color: str = INK, alpha: float = 1.0, width: float = 3.0, joints: bool = True
+    ax: Axes,
+    points: Array,
+    parts: Parts,
+    *,
+    color: str = INK,
+    alpha: float = 1.0,
+    width: float = 3.0,
+    joints: bool = True,
 ) -> None:
-    """Links as lines, arm joints as open circles, the m base joints filled in orange; points of shape (N + 1, 2)."""
-    ax.plot(*points[: m + 1].T, color=color, alpha=alpha, linewidth=2.2 * width, solid_capstyle="round", zorder=3)
-    ax.plot(*points[m:].T, color=color, alpha=alpha, linewidth=width, solid_capstyle="round", zorder=3)
+    """Links as lines, arm joints as open circles, the base joints filled in orange; points of shape (N + 1, 2)."""
+    base, arm = base_and_arm(points, parts)
+    ax.plot(*base.T, color=color, alpha=alpha, linewidth=2.2 * width, solid_capstyle="round", zorder=3)
+    ax.plot(*arm.T, color=color, alpha=alpha, linewidth=width, solid_capstyle="round", zorder=3)
     if joints:
-        ax.plot(*points[m:-1].T, "o", color=color, markerfacecolor="white", markersize=7, alpha=alpha, zorder=5)
-        ax.plot(*points[:m].T, "o", color=color, markerfacecolor=ORANGE, markersize=9, alpha=alpha, zorder=5)
+        ax.plot(*arm[:-1].T, "o", color=color, markerfacecolor="white", markersize=7, alpha=alpha, zorder=5)
+        ax.plot(*base[:-1].T, "o", color=color, markerfacecolor=ORANGE, markersize=9, alpha=alpha, zorder=5)
 
 
 def draw_ground(ax: Axes, place: Array, size: float) -> None:

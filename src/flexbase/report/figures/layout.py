@@ -49,7 +49,7 @@ def _view(ax: Axes, result: Layout, view: tuple[str, str]) -> None:
     worst = _worst(result)
     if worst is not None and worst.joints is not None:
         pose = result.plant.at(worst.joints)
-        draw_arm(ax, joint_points(pose)[:, plane], pose.arm.m, alpha=0.8, width=1.8)
+        draw_arm(ax, joint_points(pose)[:, plane], pose.arm.parts, alpha=0.8, width=1.8)
     for a, b in zip(result.before, result.after, strict=True):
         ax.plot(*np.array([a.tip[columns], b.tip[columns]]).T, color=GREY, linewidth=0.6, zorder=5)
     before, after = (np.array([one.tip[columns] for one in stations]) for stations in (result.before, result.after))

@@ -30,7 +30,7 @@ def _modes_in_plane(result: Modes, plane: tuple[int, int]) -> Figure:
     for ax in axes[max(len(shown), 1) :]:
         ax.set_axis_off()
     for ax in axes[: max(len(shown), 1)]:
-        draw_arm(ax, joint_points(result.pose)[:, plane], result.pose.arm.m)
+        draw_arm(ax, joint_points(result.pose)[:, plane], result.pose.arm.parts)
         ax.set_aspect("equal", adjustable="datalim")
         ax.set_xlabel(f"{AXES[plane[0]]} [m]")
         ax.set_ylabel(f"{AXES[plane[1]]} [m]")
@@ -48,7 +48,7 @@ def _modes_in_plane(result: Modes, plane: tuple[int, int]) -> Figure:
 
 def _swing(ax: Axes, result: Modes, mode: Mode, plane: tuple[int, int]) -> None:
     for bent, color in zip(swung(result.pose, mode), (BLUE, SKY), strict=False):
-        draw_arm(ax, bent[:, plane], result.pose.arm.m, color=color, alpha=0.75, width=1.4, joints=False)
+        draw_arm(ax, bent[:, plane], result.pose.arm.parts, color=color, alpha=0.75, width=1.4, joints=False)
 
 
 def _directions(ax: Axes, result: Modes, mode: Mode, plane: tuple[int, int]) -> None:

@@ -31,15 +31,15 @@ def draw_postures(result: Postures) -> Figure:
         ax = figure.add_subplot(1, 2, 1, projection="3d")
         drawn = [joint_points(pose) for pose, _ in [(best, INK), *others]]
         for points, (_, color) in zip(drawn[1:], others, strict=True):
-            draw_arm_in_space(ax, points, best.arm.m, color=color, alpha=0.7, width=1.6, joints=False)
-        draw_arm_in_space(ax, drawn[0], best.arm.m, color=BLUE)
+            draw_arm_in_space(ax, points, best.arm.parts, color=color, alpha=0.7, width=1.6, joints=False)
+        draw_arm_in_space(ax, drawn[0], best.arm.parts, color=BLUE)
         draw_base_joints(ax, best, MARK * float(np.ptp(drawn[0], axis=0).max()))
         dress_in_space(ax, drawn[0], np.concatenate(drawn))
     else:
         ax = figure.add_subplot(1, 2, 1)
         for pose, color in others:
-            draw_arm(ax, joint_points(pose)[:, plane], pose.arm.m, color=color, alpha=0.7, width=1.8)
-        draw_arm(ax, joint_points(best)[:, plane], best.arm.m, color=BLUE)
+            draw_arm(ax, joint_points(pose)[:, plane], pose.arm.parts, color=color, alpha=0.7, width=1.8)
+        draw_arm(ax, joint_points(best)[:, plane], best.arm.parts, color=BLUE)
         ax.set_aspect("equal", adjustable="datalim")
         ax.margins(0.12)
         ax.set_xlabel(f"{AXES[plane[0]]} [m]")

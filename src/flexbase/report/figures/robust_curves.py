@@ -21,9 +21,9 @@ def draw_robust_curves(result: RobustCurves) -> Figure:
     figure = new_figure(9.4, 4.7)
     left, right = figure.subplots(1, 2)
     arm = result.plant.arm
-    names = arm.mechanism.joint_names[arm.m :]
+    names = arm.joint_names
     columns = [names.index(name) for name in result.axes]
-    turning = np.array([arm.mechanism.joint_types[arm.m + i] == "revolute" for i in columns])
+    turning = np.array([arm.joint_units[i] == "rad" for i in columns])
     for one in result.curves:
         color = COLORS[(one.mode - 1) % len(COLORS)]
         joints = one.joints[:, columns]

@@ -27,7 +27,7 @@ def draw_robust_points(result: RobustPoints) -> Figure:
     strips = axes[-1]
     shake = np.random.default_rng(0).uniform(-0.3, 0.3, result.joints.shape)
     strips.scatter(result.joints, np.arange(arm.n) + shake, s=size, color=BLUE, linewidths=0)
-    strips.set_yticks(range(arm.n), arm.mechanism.joint_names[arm.m :])
+    strips.set_yticks(range(arm.n), arm.joint_names)
     strips.set_ylim(arm.n - 0.4, -0.6)
     strips.set_xlabel("joint [rad or m]")
     strips.grid(axis="x")

@@ -76,11 +76,10 @@ def _error(ax: Axes, run: Drawable, columns: list[int], names: list[str], unit: 
 
 def _torques(ax: Axes, run: Drawable) -> None:
     arm = run.goal.arm
-    kinds = arm.mechanism.joint_types[arm.m :]
-    for i, name in enumerate(arm.mechanism.joint_names[arm.m :]):
+    for i, name in enumerate(arm.joint_names):
         ax.plot(run.t, run.torque[:, i], color=LINES[i % len(LINES)], linewidth=1.1, label=name)
-    units = {"revolute": "torque [N m]", "prismatic": "force [N]"}
-    ax.set_ylabel(" or ".join(units[kind] for kind in units if kind in kinds))
+    efforts = {"rad": "torque [N m]", "m": "force [N]"}
+    ax.set_ylabel(" or ".join(efforts[unit] for unit in efforts if unit in arm.joint_units))
     ax.legend(loc="upper right", ncols=3)
 
 

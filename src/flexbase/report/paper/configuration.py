@@ -23,7 +23,7 @@ def configuration(case: Example) -> Figure:
     x, y = DESIGN_TIP
     draw_ground(ax, points[0], 0.03)
     draw_twist(ax, points[0], 0.045)
-    draw_arm(ax, points, 1)
+    draw_arm(ax, points, case.pose.arm.parts)
     ax.plot(x, y, "s", color=BLUE, markersize=8, zorder=6)
     ax.annotate("work point", (x, y), (x + 0.02, y - 0.035), color=BLUE, ha="left", va="center")
     _dimension(ax, (0.0, -0.34), (x, -0.34), "0.33 m")

@@ -45,12 +45,11 @@ class SampledLoops:
         """start : joints, shape (runs, N), at rest; tracking : in place of the controllers for as long as it says."""
         self._sensing, arm = controllers[0].sensing, goals[0].arm
         check_causal(controllers)
-        m = arm.m
         holding = np.array([_holding(one, goal.q) for one, goal in zip(controllers, goals, strict=True)])
         before = (
             np.array([_holding(one, q) for one, q in zip(controllers, start, strict=True)]) if tracking else holding
         )
-        self._settling = Settling(controllers, np.stack([goal.q[m:] for goal in goals]), holding)
+        self._settling = Settling(controllers, np.stack([goal.joints for goal in goals]), holding)
         self._senses = Senses(arm, self._sensing, len(goals), seed)
         self._drives = Drives(self._sensing, before)
         self._physics, self._tracking = physics, tracking
@@ -104,4 +103,4 @@ def check_causal(controllers: Sequence[SampledController]) -> None:
 def _holding(controller: SampledController, q: Array) -> Array:
     """Arm torques against gravity, by the controller's own model of the robot."""
     arm = controller.pose.arm
-    return gravity_torques(arm, q)[arm.m :]
+    return arm.parts.arm(gravity_torques(arm, q))

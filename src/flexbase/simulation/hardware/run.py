@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from flexbase.cautions import collected
@@ -100,4 +99,4 @@ def _start(start: Pose | ArrayLike, goal: Pose) -> Array:
         check_same_joints(goal.plant, start)
         return start.q
     joints = check_length("start", start, goal.arm.n, "one for each arm joint")
-    return goal.plant.at(np.concatenate([goal.equilibrium, joints])).q
+    return goal.plant.at(goal.arm.parts.whole(goal.equilibrium, joints)).q

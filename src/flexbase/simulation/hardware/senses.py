@@ -18,9 +18,9 @@ class Senses:
     """
 
     def __init__(self, arm: MountedArm, sensing: Sensing, runs: int, seed: int) -> None:
-        self._sensing, self._m = sensing, arm.m
+        self._sensing, self._parts = sensing, arm.parts
         counts = sensing.encoder_counts
-        turns = np.array([2.0 * np.pi if kind == "revolute" else 1.0 for kind in arm.mechanism.joint_types[arm.m :]])
+        turns = np.array([2.0 * np.pi if unit == "rad" else 1.0 for unit in arm.joint_units])
         self._count = None if counts is None else turns / counts
         self._random = [np.random.default_rng([seed, run]) for run in range(runs)]
         self._late: list[Array] = []  # tip errors on their way, the oldest first
@@ -41,7 +41,7 @@ class Senses:
         return self._held, self._joints(seen), self._accelerations(seen)
 
     def _joints(self, seen: Seen) -> Array:
-        joints = seen.q[:, self._m :]
+        joints = self._parts.arm(seen.q)
         return joints if self._count is None else np.asarray(np.round(joints / self._count) * self._count)
 
     def _accelerations(self, seen: Seen) -> Array:

@@ -84,6 +84,6 @@ def side_by_side(cases: Sequence[Case], push: Push | None, move: SampledMove) ->
 
 def _tracking(case: Case, move: SampledMove) -> JointTracking:
     """By the controller's model of the robot, to where the goal's robot rests."""
-    m = case.goal.arm.m
-    path = JointPath(case.start[m:].tolist(), case.goal.q[m:].tolist(), move.switch, LAWS[move.trajectory])
+    start = case.goal.arm.parts.arm(case.start)
+    path = JointPath(start.tolist(), case.goal.joints.tolist(), move.switch, LAWS[move.trajectory])
     return JointTracking(case.controller.pose, path, move.bandwidth)

@@ -25,9 +25,7 @@ OF_LOOP = {
 def inputs(plant: Plant, starts: Pose | ArrayLike, vary: Mapping[str, ArrayLike]) -> tuple[Array, dict[str, Array]]:
     """Arm joints (runs, n), and the varied values (runs,) of every run. Raises InputError."""
     n = plant.arm.n
-    joints = (
-        end_on(plant, starts, None).q[plant.arm.m :] if isinstance(starts, Pose) else finite_array("starts", starts)
-    )
+    joints = end_on(plant, starts, None).joints if isinstance(starts, Pose) else finite_array("starts", starts)
     if joints.shape[-1:] != (n,) or joints.ndim > 2:
         raise InputError(f"starts: shape {joints.shape}; {n} arm joints are needed for each run, shape (runs, {n}).")
     check_within("starts", joints, FARTHEST, "rad or m")

@@ -35,7 +35,7 @@ class BuiltinHeld:
         self._rest = np.stack([goal.equilibrium for goal in goals]).T
         self._q, self._rates = start.T.copy(), np.zeros((arm.N, len(goals)))
         self._lagged = np.zeros((arm.n, len(goals)))
-        self._m = arm.m
+        self._parts = arm.parts
         self._steps = max(steps_between(goal, sensing) for goal in goals)
         self._time = np.full(len(goals), sensing.step / self._steps)
         self._pace = np.full(len(goals), pace_of(sensing))
@@ -46,7 +46,8 @@ class BuiltinHeld:
         found = self._look(np.vstack([self._q, self._rates, self._rest, torque.T, tip_force.T]))
         position, rotation = found[:3].T, found[3:12].T.reshape(-1, 3, 3)
         error = tool_error(position, rotation, self._task, self._target)
-        acceleration = found[12:] if not self._pace[0] else (self._rates[self._m :] - self._lagged) * self._pace
+        speeds = self._parts.arm(self._rates.T).T
+        acceleration = found[12:] if not self._pace[0] else (speeds - self._lagged) * self._pace
         return Seen(self._q.T.copy(), self._rates.T.copy(), error, acceleration.T.copy())
 
     def advance(self, torque: Array, tip_force: Array, alive: Array) -> None:

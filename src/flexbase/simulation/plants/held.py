@@ -44,7 +44,7 @@ class Held:
         frames = forward(self.arm.mechanism, q)
         accelerations = self._accelerations(frames, rates, q, Forces(*rest))
         turned = [entry for row in frames.tool_rotation for entry in row]
-        return [*frames.tool_position, *turned, *accelerations[self.arm.m :]]
+        return [*frames.tool_position, *turned, *self.arm.parts.arm(accelerations)]
 
     def step(self, inputs: Vector) -> Sequence[Scalar]:
         """Joints, rates and lagged rates (N, N, n) after a time; in: `look`'s, lagged rates (n), time, 1/lag.
@@ -58,7 +58,8 @@ class Held:
         def slope(_: float, state: State) -> State:
             joints, speeds, seen = state
             frames = forward(arm.mechanism, joints)
-            return speeds, self._accelerations(frames, speeds, joints, held), scale(pace, minus(speeds[arm.m :], seen))
+            lag = scale(pace, minus(arm.parts.arm(speeds), seen))
+            return speeds, self._accelerations(frames, speeds, joints, held), lag
 
         return [x for part in runge_kutta(slope, (q, rates, lagged), time) for x in part]
 

@@ -48,7 +48,7 @@ def mjcf_of(arm: MountedArm) -> str:
     _write_bodies(SubElement(root, "worldbody"), arm)
     _write_tendons(root, arm)
     drives = SubElement(root, "actuator")
-    for name in arm.mechanism.joint_names[arm.m :]:
+    for name in arm.joint_names:
         SubElement(drives, "motor", name=name, joint=name)
     indent(root)
     return tostring(root, encoding="unicode") + "\n"
@@ -85,11 +85,12 @@ def _joint(arm: MountedArm, number: int) -> dict[str, str]:
     for key, value in (("armature", arm.mechanism.armature[number]), ("damping", arm.mechanism.friction[number])):
         if value:
             words[key] = _numbers(value)
-    if number < arm.m:
-        words["springref"] = _numbers(arm.base.equilibrium[number])  # where tendons rest, too
+    if number in arm.parts.passive:
+        place = arm.parts.passive.index(number)
+        words["springref"] = _numbers(arm.base.equilibrium[place])  # where tendons rest, too
         for key, matrix in (("stiffness", arm.base.stiffness), ("damping", arm.base.damping)):
             if _is_diagonal(matrix):
-                words[key] = _numbers(matrix[number, number])
+                words[key] = _numbers(matrix[place, place])
     return words
 
 
@@ -103,7 +104,7 @@ def _write_tendons(root: Element, arm: MountedArm) -> None:
         for number, (strength, shape) in enumerate(zip(strengths, shapes.T, strict=True), start=1):
             if strength > 0.0:
                 tendon = SubElement(tendons, "fixed", {"name": f"{key} {number}", key: _numbers(strength)})
-                for name, share in zip(arm.mechanism.joint_names[: arm.m], shape, strict=True):
+                for name, share in zip(arm.parts.base(arm.mechanism.joint_names), shape, strict=True):
                     SubElement(tendon, "joint", joint=name, coef=_numbers(share))
     if len(tendons):
         root.append(tendons)

@@ -60,12 +60,12 @@ class MujocoHeld:
             data = run.data
             if self._pace:
                 mujoco.mj_kinematics(run.model, data)
-                acceleration = (data.qvel[arm.m :] - run.lagged) * self._pace
+                acceleration = (arm.parts.arm(data.qvel) - run.lagged) * self._pace
             else:
                 data.ctrl[:] = u
                 self._push(mujoco, run, f)
                 mujoco.mj_forward(run.model, data)
-                acceleration = data.qacc[arm.m :].copy()
+                acceleration = arm.parts.arm(data.qacc)
             place, turned = data.site_xpos[self._tool], data.site_xmat[self._tool].reshape(3, 3)
             error = tool_error(place, turned, arm.task, run.target)
             parts.append((data.qpos.copy(), data.qvel.copy(), error, acceleration))
@@ -77,7 +77,7 @@ class MujocoHeld:
             self._advance(mujoco, torque, tip_force, alive)
 
     def _advance(self, mujoco: Any, torque: Array, tip_force: Array, alive: Array) -> None:
-        m = self._arm.m
+        parts = self._arm.parts
         for run, u, f, going in zip(self._runs, torque, tip_force, alive, strict=True):
             if not going:
                 continue
@@ -88,11 +88,11 @@ class MujocoHeld:
                 continue
             for _ in range(self._steps):
                 self._push(mujoco, run, f)
-                before = run.data.qvel[m:].copy()
+                before = parts.arm(run.data.qvel)
                 mujoco.mj_step(run.model, run.data)
                 if self._filter is not None:
                     kept, old, new = self._filter
-                    run.lagged = kept * run.lagged + old * before + new * run.data.qvel[m:]
+                    run.lagged = kept * run.lagged + old * before + new * parts.arm(run.data.qvel)
 
     def _push(self, mujoco: Any, run: _One, force: Array) -> None:
         """Joint forces of a force on the tool, by MuJoCo's Jacobian at its present place."""

@@ -48,8 +48,8 @@ class MujocoPlant:
         result = np.empty(q.shape)
         for state in np.ndindex(q.shape[:-1]):
             M, force = self.equation(q[state], rates[state])
-            force[self.arm.m :] += torque[state]
-            result[state] = solved(self.arm, M.tolist(), force, E)
+            driven = self.arm.parts.whole(np.zeros(self.arm.m), torque[state])
+            result[state] = solved(self.arm, M.tolist(), force + driven, E)
         return result
 
 

@@ -8,7 +8,6 @@ from typing import ClassVar
 import numpy as np
 
 from flexbase.cautions import collected
-from flexbase.checks import Array
 from flexbase.errors import FlexbaseError
 from flexbase.model.loop import loop_on
 from flexbase.model.sensing import Sensing
@@ -51,14 +50,9 @@ class Case(Plain):
     document: ClassVar = (
         *("number", "method", "gain_scale=scale", "rate_hz=controller.sensing.rate"),
         *(f"{name}=controller.sensing.{name}" for name in DRAWN),
-        *("change", "drive", "joints", "spectral_radius=radius", "predicted_stable=stable", "complete"),
+        *("change", "drive", "joints=pose.joints", "spectral_radius=radius", "predicted_stable=stable", "complete"),
         "predicted_growth_per_s=rate",
     )
-
-    @property
-    def joints(self) -> Array:
-        """Of the arm."""
-        return self.pose.q[self.pose.arm.m :]
 
     @property
     def stable(self) -> bool:

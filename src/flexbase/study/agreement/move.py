@@ -31,8 +31,8 @@ def prepared(case: Case, seed: int) -> Case:
     gains = arm.gains
     assert gains is not None  # checked by the study
     stiffness = case.scale * gains.stiffness
-    pull = SATURATED * np.abs(controller.pose.J[:, arm.m :].T @ stiffness).sum(axis=1)
-    limits = np.maximum(pull, LEAST * np.diag(controller.pose.M)[arm.m :])
+    pull = SATURATED * np.abs(controller.pose.Jv.T @ stiffness).sum(axis=1)
+    limits = np.maximum(pull, LEAST * np.diag(controller.pose.Mhat))
     sensing = replace(
         controller.sensing,
         encoder_counts=float(rng.choice(COUNTS)),
@@ -59,7 +59,7 @@ def drive(case: Case) -> SampledRun:
     """The run that `watch` judges."""
     arm = case.pose.arm
     rng = np.random.default_rng([case.number, 5])
-    joints = case.controller.pose.q[arm.m :]
+    joints = case.controller.pose.joints
     force = rng.standard_normal(arm.k)
     return simulate_sampled(
         case.controller,

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexbase.checks import Array, positive_number
-from flexbase.dynamics.inverse.newton import reach
 from flexbase.errors import InputError, Unreachable
 from flexbase.measures import Measure
 from flexbase.model.loop import Asked
@@ -147,7 +146,7 @@ def best_layout(
         raise InputError(f'goal: "{goal}" is unknown. Give "worst" or "mean".')
     arm = plant.arm
     given = make_targets(arm.task, targets)
-    largest = reach(arm.mechanism) if within is None else positive_number("within", within, "m")
+    largest = arm.mechanism.reach if within is None else positive_number("within", within, "m")
     placement = make_placement(arm.task, given.values, along, turn, largest)
     sides = branches_of(objective, None if branch is None else check_branch(branch))
     before = stand(objective, given.values, sides)

@@ -138,7 +138,7 @@ def _place(
             if value not in (None, ()):
                 raise InputError(f"{name}: belongs to a map, but a pose is given. Leave it out, or give the plant.")
         arm = replace(where.arm, base=replace(where.arm.base, equilibrium=where.equilibrium))
-        return arm, Place(Grid(()), (), tuple(where.q[arm.m :].tolist()))
+        return arm, Place(Grid(()), (), tuple(where.joints.tolist()))
     if shape is None and len(axes) in (0, 2):
         shape = USUAL_SHAPE
     if over == "tip":

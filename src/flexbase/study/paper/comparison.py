@@ -61,7 +61,7 @@ def _parameters(plant: Plant) -> list[PaperRow]:
 def _before(case: Example, shaped: Shaping) -> list[PaperRow]:
     mode = modes(case.pose)[0]
     return [
-        *_entries("Mhat", "kg m²", printed.INERTIA, case.pose.M[1:, 1:], symmetric=True),
+        *_entries("Mhat", "kg m²", printed.INERTIA, case.pose.Mhat, symmetric=True),
         *_entries("R_1 before", "m/(N s²)", printed.RESIDUE_BEFORE, mode.residue),
         PaperRow("w_1 before [m/(N s²)]", -0.07, mode.robustness, 6, "Read off the start of Fig. 7a."),
         PaperRow("omega_1 before [rad/s]", "below 300", mode.frequency, 4, "Fig. 7c starts there; no number printed."),

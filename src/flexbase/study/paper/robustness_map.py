@@ -73,10 +73,10 @@ def robustness_map(plant: Plant, loop: Asked = None, shape: tuple[int, int] = (R
     E = loop_on(plant.arm, loop).E
     asked = (MEASURES["robustness"], MEASURES["turn"])
     block = Engine(Question(arm, asked, (0, 1), (0.0, 0.0), E=E)).run(np.ascontiguousarray(joints.T))
-    frames = forward(arm.mechanism, (*arm.base.equilibrium.tolist(), *unstack(joints, 1)))
+    frames = forward(arm.mechanism, arm.parts.whole(arm.base.equilibrium.tolist(), unstack(joints, 1)))
     inertia = stack(mass_matrix(frames))
     if E is not None:
-        inertia[..., arm.m :, arm.m :] -= E
+        inertia = inertia - arm.parts.on_arm(E)
     return RobustnessMap(
         x,
         y,

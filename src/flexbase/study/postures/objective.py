@@ -65,7 +65,7 @@ class Objective:
     @cached_property
     def spread(self) -> float:
         """How much values differ between postures: the middle half of a sample, or one where all are equal."""
-        values = self(spread_starts(self.arm.mechanism, self.arm.m, "+", TYPICAL))[0]
+        values = self(spread_starts(self.arm.mechanism, self.arm.parts, "+", TYPICAL))[0]
         known = values[np.isfinite(values)]
         low, high = np.percentile(known, [25.0, 75.0]) if known.size else (0.0, 0.0)
         return float(high - low) or 1.0

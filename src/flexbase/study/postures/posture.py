@@ -47,7 +47,7 @@ class Posture:
     @property
     def joints(self) -> Array:
         """Arm joints, shape (n,)."""
-        return np.asarray(self.pose.q[self.pose.arm.m :])
+        return self.pose.joints
 
     def to_dict(self) -> dict[str, Any]:
         """Plain numbers in SI units."""
@@ -144,7 +144,7 @@ def optima(objective: Objective, target: Array, side: str, count: int) -> list[A
     arm = objective.arm
     problem = TipProblem(arm.mechanism, arm.task, arm.base.equilibrium)
     inside = inside_branch(arm.mechanism, arm.base.equilibrium, side)
-    starts = spread_starts(arm.mechanism, arm.m, side, count)
+    starts = spread_starts(arm.mechanism, arm.parts, side, count)
     starts[:, idle_joints(problem)] = 0.0
     rows, errors = solve_rows(problem, starts, target)
     rows = rows[(errors <= TOLERANCE * problem.scale) & inside(rows)]
@@ -194,7 +194,7 @@ def _usual(plant: Plant, objective: Objective, target: Array, branch: str | None
     arm = plant.arm
     side = branch or arm.task.branch
     try:
-        joints = plant.at_tip(target, side).q[arm.m :]
+        joints = plant.at_tip(target, side).joints
     except (SingularArm, Unreachable):
         return None
     return _posture(plant, objective, target, side, joints)

@@ -81,7 +81,7 @@ class RobustCurves:
     def save_csv(self, path: str | Path) -> None:
         """A line a point, curve after curve: number of the curve, mode, joints, tip. Raises InputError."""
         arm = self.plant.arm
-        header = ["curve", "mode", *arm.mechanism.joint_names[arm.m :], *arm.task.rows]
+        header = ["curve", "mode", *arm.joint_names, *arm.task.rows]
         rows = [
             [number, one.mode, *joints, *tip]
             for number, one in enumerate(self.curves, start=1)
@@ -186,5 +186,5 @@ def _polished(equation: Equation, points: Array, step: float) -> Array:
 
 def _period(plant: Plant, joint: int, ticks: Array) -> float:
     """A full turn where the window spans one, else none."""
-    turns = plant.arm.mechanism.joint_types[plant.arm.m + joint] == "revolute"
+    turns = plant.arm.joint_units[joint] == "rad"
     return 2.0 * np.pi if turns and abs(ticks[-1] - ticks[0] - 2.0 * np.pi) < 1e-9 else np.inf

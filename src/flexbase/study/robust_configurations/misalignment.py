@@ -90,5 +90,5 @@ def make_misalignment(plant: Plant, loop: Asked) -> Misalignment:
 def tips_of(plant: Plant, joints: Array) -> Array:
     """Task coordinates of the resting tip, shape (S, k), of arm joints (S, n); the base at its equilibrium."""
     arm = plant.arm
-    frames = forward(arm.mechanism, (*arm.base.equilibrium.tolist(), *unstack(joints, 1)))
+    frames = forward(arm.mechanism, arm.parts.whole(arm.base.equilibrium.tolist(), unstack(joints, 1)))
     return np.broadcast_to(task_value(frames, arm.task), (len(joints), arm.k)).copy()

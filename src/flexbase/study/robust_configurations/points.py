@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexbase.checks import Array, check_length
-from flexbase.dynamics.inverse.newton import TipProblem, reach
+from flexbase.dynamics.inverse.newton import TipProblem
 from flexbase.errors import InputError
 from flexbase.measures import MEASURES
 from flexbase.model.loop import Asked
@@ -70,7 +70,7 @@ class RobustPoints:
     def save_csv(self, path: str | Path) -> None:
         """A line a posture: joints, tip, alignment of each mode. Raises InputError."""
         arm = self.plant.arm
-        header = [*arm.mechanism.joint_names[arm.m :], *arm.task.rows, *(f"alignment_{i + 1}" for i in range(arm.m))]
+        header = [*arm.joint_names, *arm.task.rows, *(f"alignment_{i + 1}" for i in range(arm.m))]
         write_rows(path, header, np.hstack([self.joints, self.tip, self.alignment]).tolist())
 
     def summary(self) -> str:
@@ -193,8 +193,7 @@ def _samples(plant: Plant, count: int, bounds: Sequence[float] | None) -> Array:
     from scipy.stats import qmc  # half a second to import
 
     arm = plant.arm
-    span = [np.pi if kind == "revolute" else reach(arm.mechanism) for kind in arm.mechanism.joint_types[arm.m :]]
-    window = np.column_stack([-np.array(span), span])
+    window = np.array(arm.parts.arm(arm.mechanism.ranges))
     if bounds is not None:
         window = check_length("bounds", bounds, 2 * arm.n, "low, high of each arm joint in turn").reshape(-1, 2)
     low, high = window.T

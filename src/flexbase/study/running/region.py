@@ -126,7 +126,7 @@ def validity(
 def _grade(cell: _Cell) -> int:
     pose = cell.controller.pose
     try:
-        there = pose.plant.at_tip(cell.target, cell.branch, near=pose.q[pose.arm.m :])
+        there = pose.plant.at_tip(cell.target, cell.branch, near=pose.joints)
     except (Unreachable, SingularArm):
         return OUT_OF_REACH
     controller = cell.controller
@@ -142,7 +142,7 @@ def _branch(pose: Pose) -> str:
     """The branch on which inverse kinematics finds the pose again. Raises InputError."""
     for branch in dict.fromkeys((pose.arm.task.branch, *BRANCHES)):
         try:
-            again = pose.plant.at_tip(pose.tip, branch, near=pose.q[pose.arm.m :])
+            again = pose.plant.at_tip(pose.tip, branch, near=pose.joints)
         except (Unreachable, SingularArm, InputError):
             continue
         if np.abs(again.q - pose.q).max() < SAME:

@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from flexbase.checks import Array, check_length
-from flexbase.dynamics.inverse.arm_angles import arm_angles_of_many, elbow_of, reach
+from flexbase.dynamics.inverse.arm_angles import arm_angles_of_many
+from flexbase.dynamics.inverse.branches import elbow_of
 from flexbase.dynamics.inverse.two_joint_arm import TwoJointArm, two_joint_arm
 from flexbase.errors import InputError, nearest_name
 from flexbase.model.task import check_branch
@@ -101,7 +102,7 @@ def sample_place(
     seed: int,
 ) -> Place:
     """Samples of a box of arm joints, all of them if none are named, and of the parameters' ranges."""
-    everything = tuple(joints) or plant.arm.mechanism.joint_names[plant.arm.m :]
+    everything = tuple(joints) or plant.arm.joint_names
     names, units, varied, held, window = joint_box(plant, bounds, everything, hold)
     if shape is not None and len(shape) != 1:
         raise InputError(f"shape: {tuple(shape)} given, but samples have one count. Give a single number.")
@@ -125,19 +126,16 @@ def joint_box(
 ) -> tuple[list[str], list[str], tuple[int, ...], tuple[float, ...], list[float]]:
     """Names, units and places of the joints that vary, all n held values, and low, high of each; checked."""
     arm = plant.arm
-    names = arm.mechanism.joint_names[arm.m :]
+    names, ranges = arm.joint_names, arm.parts.arm(arm.mechanism.ranges)
     if arm.n < 2 and not joints:
         raise InputError(f"map over joints: {plant.name} has one arm joint, two are needed.")
     elbow = elbow_of(arm.n) or 1
     chosen = tuple(joints) or names[elbow - 1 : elbow + 1]
     varied = _places("arm joint", chosen, names)
-    kinds = [arm.mechanism.joint_types[arm.m + place] for place in varied]
-    spans = [np.pi if kind == "revolute" else reach(arm.mechanism) for kind in kinds]
-    whole = [float(edge) for span in spans for edge in (-span, span)]
+    whole = [edge for place in varied for edge in ranges[place]]
     window = whole if bounds is None else _checked_bounds(bounds, len(varied))
     held = check_length("hold", hold, arm.n, "one for each arm joint") if len(hold) else np.full(arm.n, BENT)
-    units = ["rad" if kind == "revolute" else "m" for kind in kinds]
-    return list(chosen), units, varied, tuple(held.tolist()), window
+    return list(chosen), [arm.joint_units[place] for place in varied], varied, tuple(held.tolist()), window
 
 
 def _places(what: str, chosen: Sequence[str], names: Sequence[str]) -> tuple[int, ...]:
@@ -202,7 +200,7 @@ def _checked_bounds(bounds: Sequence[float], axes: int) -> list[float]:
 
 def _window(plant: Plant, planar: TwoJointArm | None, varied: Sequence[int], units: Sequence[str]) -> list[float]:
     """A square around all that the tip can reach; a full turn for rotations."""
-    radius = MARGIN * (reach(plant.arm.mechanism) if planar is None else planar.upper + planar.fore)
+    radius = MARGIN * (plant.arm.mechanism.reach if planar is None else planar.upper + planar.fore)
     window: list[float] = []
     for i in varied:
         centre = 0.0 if planar is None else float(planar.shoulder[i])

@@ -21,11 +21,12 @@ def configuration_of(
 
     Leaves out gravity's stiffness and sag, and joint friction.
     """
-    frames = varied_frames(arm, forward(arm.mechanism, (*arm.base.equilibrium.tolist(), *joints)), parameters)
+    q = arm.parts.whole(arm.base.equilibrium.tolist(), joints)
+    frames = varied_frames(arm, forward(arm.mechanism, q), parameters)
     return Configuration(
         M=mass_matrix(frames),
         J=task_jacobian(frames, arm.task.indices),
-        m=arm.m,
+        parts=arm.parts,
         stiffness=varied_base(arm, "stiffness", parameters),
         damping=varied_base(arm, "damping", parameters),
         E=E,

@@ -65,7 +65,7 @@ class Question:
             status = select(pivot > 0.0, status, float(INDEFINITE))
         if self.redesigned:
             status = select(exact_design.feasible(self._nominal(joints)), status, float(INFEASIBLE))
-        ratio = independence(tuple(row[self.arm.m :] for row in configuration.J))
+        ratio = independence(tuple(map(self.arm.parts.arm, configuration.J)))
         status = select(ratio > SINGULAR_RATIO, status, float(SINGULAR))
         status = select(reached, status, float(UNREACHABLE))
         usable, values = status == float(OK), []

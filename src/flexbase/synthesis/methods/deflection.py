@@ -16,7 +16,6 @@ from flexbase.compensators.registry import design
 from flexbase.errors import FlexbaseError, Infeasible, InputError
 from flexbase.linear.discrete.affine_loop import AffineLoop
 from flexbase.linear.discrete.system import Discrete, delay, series, side_by_side, static
-from flexbase.linear.margins import arm_on_free_base
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
@@ -66,7 +65,7 @@ def deflection(pose: Pose, sensing: Sensing, gains: Gains, *, E: Array | None = 
 def with_deflection(pose: Pose, sensing: Sensing, gains: Gains, E: Array) -> SampledController:
     """Task PD with an E that acts through the base's deflection. Raises Unsolvable where E = Ms."""
     eye = np.eye(len(E))
-    gain = inverse(eye - E @ np.linalg.inv(arm_on_free_base(pose)), FREE)
+    gain = inverse(eye - E @ np.linalg.inv(pose.Ms), FREE)
     law = static(np.hstack([gain, gain - eye]), sensing.step)
     system = series(signals(pose, sensing, gains), law)
     return SampledController("deflection", pose, sensing, system, None, {"gain": E.tolist()})
@@ -77,8 +76,8 @@ def signals(pose: Pose, sensing: Sensing, gains: Gains) -> Discrete:
 
     With G = (I - E Ms^-1)^-1 the torques are G times the first and G - I times the second.
     """
-    n, m, h = pose.arm.n, pose.arm.m, sensing.step
-    pull = pose.M[m:, :m] @ np.linalg.solve(pose.M[:m, :m], np.hstack([pose.K[:m, :m], pose.D[:m, :m]]))
+    n, h = pose.arm.n, sensing.step
+    pull = pose.Map @ np.linalg.solve(pose.Mpp, np.hstack([pose.Kp, pose.Dp]))
     law = pd_with_gain(pose, sensing, gains, None, "deflection").system
     base = series(base_deflection(pose, sensing), static(np.asarray(pull), h))
     split = static(np.vstack([np.eye(pose.arm.k + 2 * n)] * 2), h)
@@ -89,7 +88,7 @@ def base_deflection(pose: Pose, sensing: Sensing) -> Discrete:
     """q_p (m) and its rate by differences (m) from measurements (k + 2n); the joints wait for the late tip error."""
     n, k, m, h = pose.arm.n, pose.arm.k, pose.arm.m, sensing.step
     together = side_by_side(static(np.eye(k), h), delay(n, sensing.mean_task_delay, h), static(np.zeros((0, n)), h))
-    q_p = np.linalg.pinv(pose.J[:, :m]) @ np.hstack([np.eye(k), -pose.J[:, m:]])
+    q_p = np.linalg.pinv(pose.Jp) @ np.hstack([np.eye(k), -pose.Jv])
     eye = np.eye(m)
     rates = Discrete(np.zeros((m, m)), eye, np.vstack([0.0 * eye, -eye / h]), np.vstack([eye, eye / h]), h)
     return series(series(together, static(np.asarray(q_p), h)), rates)
@@ -99,7 +98,7 @@ def _check_seen(pose: Pose) -> None:
     m, k = pose.arm.m, pose.arm.k
     if m == 0:
         raise Infeasible(f"{pose.plant.name}: the base is rigid, so it has no deflection. Use none, or coprime.")
-    sizes = np.linalg.svd(pose.J[:, :m], compute_uv=False)
+    sizes = np.linalg.svd(pose.Jp, compute_uv=False)
     if m > k or sizes[-1] <= SEEN * sizes[0]:
         raise Infeasible(
             f"{pose.plant.name}: {k} task rows do not show all {m} base joints (smallest singular value of Jp "
@@ -110,7 +109,7 @@ def _check_seen(pose: Pose) -> None:
 def search(pose: Pose, sensing: Sensing, gains: Gains) -> tuple[Callable[[Array], Landscape], Array]:
     """The objective and its slopes at x, and what E = sum of x_i basis_i is made of, in units of Ms."""
     n, k = pose.arm.n, pose.arm.k
-    Ms = arm_on_free_base(pose)
+    Ms = pose.Ms
     Ls, eye = np.linalg.cholesky(Ms), np.eye(n)
     entries = np.array([np.outer(eye[i], eye[j]) for i, j in _pairs(n)])
     basis = Ls @ np.maximum(entries, entries.swapaxes(1, 2)) @ Ls.T
@@ -132,7 +131,7 @@ def _pairs(n: int) -> list[tuple[int, int]]:
 
 def _starts(pose: Pose) -> list[Array]:
     """No E, and a share of the ideal design."""
-    Ls, pairs = np.linalg.cholesky(arm_on_free_base(pose)), _pairs(pose.arm.n)
+    Ls, pairs = np.linalg.cholesky(pose.Ms), _pairs(pose.arm.n)
     share = SHARE * np.linalg.solve(Ls, np.linalg.solve(Ls, _ideal(pose)).T)
     return [np.zeros(len(pairs)), np.array([share[pair] for pair in pairs])]
 

@@ -14,7 +14,6 @@ from flexbase.compensators.registry import design
 from flexbase.errors import Infeasible, InputError, MissingExtra
 from flexbase.linear.discrete.affine_loop import AffineLoop, Piece
 from flexbase.linear.discrete.system import Discrete, series, side_by_side, static
-from flexbase.linear.margins import arm_on_free_base
 from flexbase.linear.modal import modes
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
@@ -98,10 +97,9 @@ class SampledProblem:
                 raise InputError(f'free: "{name}" is unknown. Give some of {", ".join(FREE)}.')
         self.pose, self.sensing, self.gains, self.free, self.sensors = pose, sensing, gains, tuple(free), sensors
         self.lowest = {"stiffness": softest - 1.0, "damping": softest**0.5 - 1.0, "joint-damping": 0.0}
-        n, k, m = pose.arm.n, pose.arm.k, pose.arm.m
-        self.Ls = np.linalg.cholesky(arm_on_free_base(pose))
+        n, k, Jv = pose.arm.n, pose.arm.k, pose.Jv
+        self.Ls = np.linalg.cholesky(pose.Ms)
         self.pairs = [(i, j) for i in range(n) for j in range(i, n)] if "E" in free else []
-        Jv = pose.J[:, m:]
         blank = np.zeros((n, 2 * k + 3 * n))
         self.proportional, self.rate, self.joints = blank.copy(), blank.copy(), blank.copy()
         self.proportional[:, :k], self.rate[:, k : 2 * k] = -Jv.T @ gains.stiffness, -Jv.T @ gains.damping
@@ -138,7 +136,7 @@ class SampledProblem:
         """Single entries of the gains on tip rate, joint rate and acceleration, each in the unit of its kind."""
         k, n = self.pose.arm.k, len(self.Ls)
         Lk = np.linalg.cholesky(self.gains.damping + 1e-9 * np.trace(self.gains.damping) * np.eye(k))
-        pull, Ls = -self.pose.J[:, self.pose.arm.m :].T @ Lk, self.Ls
+        pull, Ls = -self.pose.Jv.T @ Lk, self.Ls
         sides = [(k, pull, Lk.T), (2 * k, -JOINT_DAMPING * Ls, Ls.T), (2 * k + 2 * n, Ls, Ls.T)]
         found = []
         for first, left, right in sides:

@@ -18,8 +18,8 @@ RATES = np.concatenate([[0.0], np.geomspace(3.0, 1000.0, 11)])  # damping over e
 @hardware_method("viscous", "task PD and damped joints: simple, and what is tried first")
 def viscous(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
     """The task PD of `gains` and a damping of d times the diagonal of Mhat, with the d that does best at this pose."""
-    robots, m = robots_at(pose, sensing), pose.arm.m
-    inertia = np.diag(np.diag(pose.M[m:, m:]))
+    robots = robots_at(pose, sensing)
+    inertia = np.diag(np.diag(pose.Mhat))
     tried = []
     for rate in RATES:
         made = pd_with_gain(pose, sensing, gains, None, "viscous", rate * inertia)

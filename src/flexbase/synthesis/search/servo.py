@@ -55,8 +55,8 @@ def joint_servo(
     slow : two states more for each task row; None: the tip error is not heard
     Raises Unsolvable where the loop shaping has no solution.
     """
-    n, k, m = pose.arm.n, pose.arm.k, pose.arm.m
-    inertia, Jv = floating_inertia(pose), pose.J[:, m:]
+    n, k = pose.arm.n, pose.arm.k
+    inertia, Jv = pose.Ms, pose.Jv
     mobility = Jv @ np.linalg.solve(inertia, Jv.T)
     w = float(np.sqrt(scale * np.trace(gains.stiffness @ mobility) / k))
     one, b_opt = _scalar(w, sensing, weight)
@@ -83,13 +83,6 @@ def _towards(inertia: Array, Jv: Array, gains: Gains) -> Array:
 def _lowpass(corner: float, gain: float, step: float) -> Discrete:
     pole = np.exp(-corner * step)
     return Discrete(np.array([[pole]]), np.eye(1), np.array([[gain * (1.0 - pole)]]), np.zeros((1, 1)), step)
-
-
-def floating_inertia(pose: Pose) -> Array:
-    """Inertia that the arm's torques meet where nothing holds the base, shape (n, n)."""
-    m = pose.arm.m
-    M = pose.M
-    return np.asarray(M[m:, m:] - M[m:, :m] @ np.linalg.solve(M[:m, :m], M[:m, m:]))
 
 
 def _scalar(w: float, sensing: Sensing, weight: Discrete) -> tuple[Discrete, float]:

@@ -58,8 +58,8 @@ def task_shape(pose: Pose, gains: Gains, scale: float, joint_weight: float, lag:
     A redundant arm's self-motion gets an input and an output of its own, W dq_a with W Mhat^-1 Jv^T = 0, so that the
     task cannot lose it: stiffness per inertia the mean of the task's. [theory §7]
     """
-    n, k, m = pose.arm.n, pose.arm.k, pose.arm.m
-    Jv, inertia = pose.J[:, m:], pose.M[m:, m:]
+    n, k = pose.arm.n, pose.arm.k
+    Jv, inertia = pose.Jv, pose.Mhat
     root = np.linalg.cholesky(scale * gains.stiffness)
     W = np.zeros((0, n))
     if n > k:
