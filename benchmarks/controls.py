@@ -7,13 +7,13 @@ import numpy as np
 from flexbase.dynamics.inertia import mass_matrix
 from flexbase.dynamics.kinematics import forward
 from flexbase.plant import Plant
-from flexbase.sweeps.engine.question import Question
+from flexbase.sweeps.engine.formula import Formula
 from flexbase.trace.algebra import stack
 
 ROUNDING = 1e-12  # times the condition number of M, of the largest value of the batch
 
 
-def scalar_path(question: Question, joints: np.ndarray) -> np.ndarray:
+def scalar_path(question: Formula, joints: np.ndarray) -> np.ndarray:
     """The same question on plain floats, one configuration after the other, shape (values, cells)."""
     return np.array([question(tuple(cell))[1:] for cell in joints.T.tolist()]).T
 

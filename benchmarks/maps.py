@@ -11,7 +11,7 @@ import flexbase as fb
 def map_rows_vs_poses() -> list[Ratio]:
     """A 40 x 40 robustness map against `modes` at each reachable cell."""
     plant = fb.load("ueda2003")
-    chart = fb.sweep(plant, shape=(40, 40))
+    chart = fb.sweep(plant, cells=fb.Cells(shape=(40, 40)))
     cells = [(i, j) for i, j in zip(*np.nonzero(chart.status.values == 0), strict=True)]
     x, y = chart.x.values, chart.y.values
 
@@ -21,5 +21,5 @@ def map_rows_vs_poses() -> list[Ratio]:
     mapped = np.array([float(chart.robustness[i, j, 0]) for i, j in cells])
     if not np.allclose(poses(), mapped, rtol=1e-9, atol=1e-12) or np.allclose(np.zeros(len(cells)), mapped, atol=1e-12):
         raise SystemExit("control failed: the map and the poses disagree, or a map of zeros would pass")
-    mapping = Side(lambda: fb.sweep(plant, shape=(40, 40)), times=5)
+    mapping = Side(lambda: fb.sweep(plant, cells=fb.Cells(shape=(40, 40))), times=5)
     return [race("map_rows_vs_poses", mapping, "modes() pose by pose", Side(poses), rounds=7)]

@@ -11,7 +11,7 @@ import numpy as np
 
 import flexbase as fb
 from flexbase.measures import MEASURES
-from flexbase.sweeps.engine.question import Question
+from flexbase.sweeps.engine.formula import Formula
 
 HERE = Path(__file__).parent
 ROBOTS = Path(fb.__file__).parent / "model" / "library" / "robots"
@@ -33,10 +33,10 @@ def plant(name: str) -> fb.Plant:
         return fb.load(Path(folder) / "panda1.toml")
 
 
-def robustness_of(name: str) -> Question:
+def robustness_of(name: str) -> Formula:
     """Joints in, status and the robustness of every mode out: what `flexbase map --over joints` asks."""
     arm = plant(name).arm
-    return Question(arm, (MEASURES["robustness"],), tuple(range(arm.n)), (0.0,) * arm.n)
+    return Formula(arm, (MEASURES["robustness"],), tuple(range(arm.n)), (0.0,) * arm.n)
 
 
 def joints(name: str, cells: int, seed: int = 0) -> np.ndarray:

@@ -7,7 +7,7 @@ import numpy as np
 import flexbase as fb
 
 plant = fb.load("ueda2003")
-chart = fb.sweep(plant, measures=["robustness", "compensability"], over="tip", shape=(200, 200))
+chart = fb.sweep(plant, measures=["robustness", "compensability"], cells=fb.Cells(over="tip", shape=(200, 200)))
 print(fb.summary(chart))
 
 reached = chart.status == 0
@@ -24,8 +24,8 @@ pose = plant.at_tip([0.33, -0.25])
 compensated = fb.sweep(
     plant,
     measures=["robustness"],
-    shape=(200, 200),
     loop=fb.design(pose, method="exact", natural_frequency=346.8),
+    cells=fb.Cells(shape=(200, 200)),
 )
 change = fb.difference(chart, compensated)  # of what both have
 print(f"\nWith a compensator for one pose:\n{fb.summary(change)}")

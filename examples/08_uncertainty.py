@@ -9,7 +9,7 @@ pose = plant.at_tip([0.33, -0.25])
 E = fb.design(pose, method="exact", natural_frequency=346.8)
 vary = {"stiffness": fb.Normal(1.0, 0.15), "payload": fb.Uniform(0.0, 3.0), "link_mass": fb.Lognormal(1.0, 0.05)}
 
-at_pose = fb.montecarlo(pose, vary, loop=E, criteria=["definite", "robust", "stable", "loop"], samples=5000)
+at_pose = fb.montecarlo(pose, fb.Draws(vary, samples=5000), loop=E, criteria=["definite", "robust", "stable", "loop"])
 print(at_pose.summary())
 for name, one in at_pose.by_criterion.items():
     print(f"    {name}: {one.value:.3f} ({one.lower:.3f} to {one.upper:.3f})")

@@ -47,7 +47,7 @@ from flexbase.study.agreement.study import Agreement, agreement_study
 from flexbase.study.describe import Description, describe
 from flexbase.study.layout.layout import Layout, best_layout
 from flexbase.study.layout.targets import read_targets
-from flexbase.study.montecarlo import Criterion, Fixed, Lognormal, Normal, Probability, Uniform, montecarlo
+from flexbase.study.montecarlo import Criterion, Draws, Fixed, Lognormal, MonteCarlo, Normal, Uniform, montecarlo
 from flexbase.study.postures.posture import Postures, best_posture
 from flexbase.study.robust_configurations.curves import RobustCurves, robust_curves
 from flexbase.study.robust_configurations.points import RobustPoints, robust_points
@@ -58,7 +58,7 @@ from flexbase.study.running.hardware_study import HardwareStudy, Setting, hardwa
 from flexbase.study.running.recommend import Recommendation, recommend
 from flexbase.study.running.region import Region, region
 from flexbase.study.running.safe_gain import SafeGain, safe_gain
-from flexbase.sweeps import difference, open_dataset, save_csv, save_netcdf, summary, sweep
+from flexbase.sweeps import Cells, Execution, difference, open_dataset, save_csv, save_netcdf, summary, sweep
 from flexbase.synthesis import HARDWARE_METHODS
 from flexbase.synthesis.make import make_controller
 
@@ -67,13 +67,16 @@ __version__ = "0.1.0"
 __all__ = [
     "Agreement",
     "AsItRuns",
+    "Cells",
     "Certificate",
     "Changed",
     "Comparison",
     "Compensator",
     "Criterion",
     "Description",
+    "Draws",
     "Ellipsoid",
+    "Execution",
     "FIGURES",
     "Fixed",
     "FlexbaseError",
@@ -94,13 +97,13 @@ __all__ = [
     "MissingExtra",
     "Mode",
     "Modes",
+    "MonteCarlo",
     "Move",
     "Moves",
     "Normal",
     "Plant",
     "Pose",
     "Postures",
-    "Probability",
     "Push",
     "Recommendation",
     "Region",

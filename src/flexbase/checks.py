@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from inspect import Parameter, signature
 from numbers import Integral, Real
 from types import UnionType
@@ -174,6 +174,14 @@ def _check_values(options: Iterable[Option], given: Mapping[str, object]) -> Non
             choose(one.name, str(value), dict.fromkeys(one.choices))
 
 
+def check_left_out(request: object, names: Collection[str], why: str) -> None:
+    """Raises InputError where a field of a request is given that has no meaning here; `why` ends with the mend."""
+    for one in options_of(type(request)):
+        value = getattr(request, one.name)
+        if one.name in names and (isinstance(value, np.ndarray) or value != one.default):
+            raise InputError(f"{one.name}: {why}")
+
+
 def _is_of(kind: Any, value: object) -> bool:
     """Whether a value is of a field's kind."""
     if get_origin(kind) in (Union, UnionType):
@@ -184,6 +192,9 @@ def _is_of(kind: Any, value: object) -> bool:
             return False
         each = kinds[:1] * len(value) if kinds[1:] == (...,) else kinds
         return len(each) == len(value) and all(map(_is_of, each, value))
+    if get_origin(kind) is Mapping:
+        of, to = get_args(kind)
+        return isinstance(value, Mapping) and all(_is_of(of, a) and _is_of(to, b) for a, b in value.items())
     if kind in (float, int):
         return not isinstance(value, bool) and isinstance(value, Real if kind is float else Integral)
     return isinstance(value, kind)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 
 import pytest
@@ -25,7 +26,7 @@ class Trip:
     weights: tuple[float, ...] | None = asked(None, "of the load", unit="kg", written="W,W")
     cells: tuple[int, ...] = asked((), "of the map")
     towns: tuple[str, ...] = asked((), "to see")
-    vary: tuple[tuple[str, tuple[float, float, int]], ...] = asked((), "what else")
+    vary: Mapping[str, tuple[float, float, int]] | None = asked(None, "what else")
     side: str | None = asked(None, "of the road", written="+|-")
     hidden: float = asked(1.0, "not for the command line")
     plain: int = 7  # not asked for at all
@@ -63,7 +64,7 @@ def test_every_kind_is_read() -> None:
     )
     wanted = Trip(
         speed=-0.2, stops=4, fuel="coal", loud=True, weights=(-1.0, 2.5), cells=(3, 4), towns=("a", "b"),
-        vary=(("x", (0.0, 1.0, 5)),), side="-",
+        vary={"x": (0.0, 1.0, 5)}, side="-",
     )  # fmt: skip
     assert values(found) == values(wanted)
 

@@ -19,7 +19,9 @@ SMALL = ("map", "ueda2003", "--shape", "9,7")
 def test_document_is_the_librarys(call: Call, paper: fb.Plant) -> None:
     words = ("--measures", "robustness,alignment", "--bounds", "-0.4,0.8,-0.6,0.6", "--elbow", "-", "--json")
     outcome = call(*SMALL, *words)
-    chart = fb.sweep(paper, ["robustness", "alignment"], shape=(9, 7), bounds=[-0.4, 0.8, -0.6, 0.6], branch="-")
+    chart = fb.sweep(
+        paper, ["robustness", "alignment"], fb.Cells(shape=(9, 7), bounds=[-0.4, 0.8, -0.6, 0.6], branch="-")
+    )
     assert outcome.err == ""  # stderr is no terminal: no bar
     assert outcome.document("map") == document(chart)
 
@@ -67,4 +69,4 @@ def test_nothing_in_reach_is_no_fault(call: Call) -> None:
 def test_options_of_the_other_plane_are_refused(call: Call, over: str, option: tuple[str, str]) -> None:
     outcome = call(*SMALL, "--over", over, *option)
     assert (outcome.status, outcome.out) == (2, "")
-    assert outcome.err.startswith(f"error: {option[0]}:")
+    assert outcome.err.startswith("error: branch (--elbow): ")

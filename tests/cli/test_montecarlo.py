@@ -19,13 +19,10 @@ def test_document_is_the_librarys(call: Call, paper: fb.Plant) -> None:
     outcome = call(*MAP, "--criteria", "robust=0.02,frequency=280:", "--elbow", "-", "--seed", "3", "--json")
     found = fb.montecarlo(
         paper,
-        {"payload": "uniform(0,3)"},
+        fb.Draws({"payload": "uniform(0,3)"}, samples=60, seed=3),
         redesign=True,
         criteria=["robust=0.02", "frequency=280:"],
-        shape=(8, 7),
-        branch="-",
-        samples=60,
-        seed=3,
+        cells=fb.Cells(shape=(8, 7), branch="-"),
     )
     assert (outcome.status, outcome.err) == (0, "")
     assert outcome.document("montecarlo") == found.to_dict()

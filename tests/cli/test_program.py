@@ -57,7 +57,8 @@ SHOWN = {
     "--safe-gain --region --half-width --out --json",
     "hardware-map": "--method --compensator --shape --bounds --hold --elbow --branch --path --stiffness --damping "
     "--rate --task-every --task-rate --compute-delay --task-delay --encoder-counts --acceleration --accelerometer-lag "
-    "--acceleration-filter --acceleration-noise --task-noise --torque-limit --torque-slew --resume --out --json",
+    "--acceleration-filter --acceleration-noise --task-noise --torque-limit --torque-slew "
+    "--axes --resume --scheduler --workers --out --json",
     "simulate": "--from --to --elbow --branch --compensator --switch --end --trajectory --compensate --interval "
     "--self-motion --plant --sampled --method --disturb --free --softest --most --margin --scales --scale --order "
     "--noise --rate --task-every --task-rate --compute-delay --task-delay "
@@ -67,7 +68,7 @@ SHOWN = {
     "map": "--over --shape --measure --measures --bounds --elbow --branch --hold --axes --vary --sampling --seed "
     "--engine --resume --scheduler --workers --compensator --difference --out --json",
     "montecarlo": "--tip --joints --elbow --branch --over --shape --bounds --axes --hold --vary --criterion --criteria "
-    "--samples --seed --sampling --compensator --redesign --engine --out --json",
+    "--samples --seed --sampling --compensator --redesign --engine --scheduler --workers --out --json",
     "draw": "--before --at --out",
     "posture": "--tip --elbow --branch --measure --compensator --out --json",
     "rac": "--axes --hold --modes --count --compensator --out --json",

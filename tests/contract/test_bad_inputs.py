@@ -96,8 +96,8 @@ VERBS: dict[str, Callable[[fb.Pose, Any], Any]] = {
     "manipulability": fb.manipulability,
     "simulate": one_case,
     "simulate_many": lambda pose, loop: fb.simulate_many(pose.plant, pose, pose, loop),
-    "sweep": lambda pose, loop: fb.sweep(pose.plant, shape=(3, 3), loop=loop),
-    "montecarlo": lambda pose, loop: fb.montecarlo(pose, {"payload": 1.0}, loop=loop, samples=2),
+    "sweep": lambda pose, loop: fb.sweep(pose.plant, loop=loop, cells=fb.Cells(shape=(3, 3))),
+    "montecarlo": lambda pose, loop: fb.montecarlo(pose, fb.Draws({"payload": 1.0}, samples=2), loop=loop),
     "best_posture": lambda pose, loop: fb.best_posture(pose.plant, TIP, loop=loop),
     "best_layout": lambda pose, loop: fb.best_layout(pose.plant, [TIP], loop=loop),
     "robust_curves": lambda pose, loop: fb.robust_curves(pose.plant, loop=loop),
@@ -108,7 +108,9 @@ VERBS: dict[str, Callable[[fb.Pose, Any], Any]] = {
     "safe_gain": lambda pose, loop: fb.safe_gain(pose, "none", loop),
     "region": lambda pose, loop: fb.region(pose, "none", loop),
     "as_it_runs": fb.as_it_runs,
-    "hardware_map": lambda pose, loop: fb.hardware_map(pose.plant, shape=(2, 2), loop=loop, workers=1),
+    "hardware_map": lambda pose, loop: fb.hardware_map(
+        pose.plant, loop=loop, cells=fb.Cells(shape=(2, 2)), execution=fb.Execution(workers=1)
+    ),
     "hardware_path": lambda pose, loop: fb.hardware_path(pose.plant, [TIP], loop=loop, workers=1),
     "hardware_study": lambda pose, loop: fb.hardware_study(pose.plant, poses=1, methods=["none"], loop=loop, workers=1),
 }

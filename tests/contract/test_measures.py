@@ -40,7 +40,7 @@ def test_it_has_values_where_it_fits(name: str, robot: str) -> None:
     """Of 20 random postures at least one has a value; an angle stays within half a period either way."""
     plant = fb.load(robot)
     n = plant.arm.n
-    found = fb.sweep(plant, [name], over="samples", shape=(20,), bounds=[-2.0, 2.0] * n)[name].values
+    found = fb.sweep(plant, [name], fb.Cells(over="samples", shape=(20,), bounds=[-2.0, 2.0] * n))[name].values
     known = found[np.isfinite(found)]
     assert known.size
     period = MEASURES[name].period
@@ -51,7 +51,7 @@ def test_it_has_values_where_it_fits(name: str, robot: str) -> None:
 def test_where_it_does_not_fit_it_says_what_is_missing(name: str, robot: str) -> None:
     plant = fb.load(robot)
     with pytest.raises(fb.InputError, match=str(lacking(name, plant))):
-        fb.sweep(plant, [name], shape=(2, 2))
+        fb.sweep(plant, [name], fb.Cells(shape=(2, 2)))
 
 
 @pytest.mark.parametrize("name", [name for name, one in MEASURES.items() if one.period])
@@ -59,7 +59,7 @@ def test_an_angle_changes_by_the_shorter_way(paper: fb.Plant, name: str) -> None
     """A map against itself, each value a hair past the jump: the change is the hair."""
     period = MEASURES[name].period
     assert period is not None
-    before = fb.sweep(paper, [name], shape=(9, 9))
+    before = fb.sweep(paper, [name], fb.Cells(shape=(9, 9)))
     after = before.copy(deep=True)
     after[name] = after[name] + period - 1e-3
     changes = difference(before, after)[name].values
@@ -115,7 +115,7 @@ def test_a_new_measure_needs_one_line(paper: fb.Plant, monkeypatch: pytest.Monke
     monkeypatch.setitem(MEASURES, "new", new)
     found = fb.best_posture(paper, [0.33, -0.25], "new")
     assert [one.value for one in found.found] == sorted(one.value for one in found.found)
-    chart = fb.sweep(paper, ["new"], shape=(5, 5))
+    chart = fb.sweep(paper, ["new"], fb.Cells(shape=(5, 5)))
     moved = chart.copy(deep=True)
     moved["new"] = moved["new"] + 3.9
     assert np.nanmax(np.abs(difference(chart, moved)["new"].values + 0.1)) <= 1e-12

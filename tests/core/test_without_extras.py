@@ -35,7 +35,7 @@ def hidden(monkeypatch):
         lambda pose: fb.design(pose, "bounded", radius=0.6).E.any(),  # without the start that convex's gain gives
         lambda pose: fb.hardware_verdict(fb.make_controller(pose, "lqg")).stable,
         lambda pose: fb.simulate(pose.plant, (0.2, -0.3), pose, move=fb.Move(end=0.2)).stopped is None,
-        lambda pose: (fb.sweep(pose.plant, shape=(9, 9)).status == 0).any(),
+        lambda pose: (fb.sweep(pose.plant, cells=fb.Cells(shape=(9, 9))).status == 0).any(),
         lambda pose: fb.to_mjcf(pose.plant),
     ],
 )
@@ -43,19 +43,22 @@ def test_it_runs(paper_pose, ask):
     assert ask(paper_pose)
 
 
+def tiny(pose, **how):
+    return fb.sweep(pose.plant, cells=fb.Cells(shape=(3, 3)), execution=fb.Execution(**how))
+
+
 @pytest.mark.parametrize(
     ("package", "extra", "ask"),
     [
         ("pinocchio", ROBOTS, lambda pose, path: fb.load("ur5e-gantry")),
-        ("llvmlite.binding", FAST, lambda pose, path: fb.sweep(pose.plant, shape=(3, 3), engine="compiled")),
+        ("llvmlite.binding", FAST, lambda pose, path: tiny(pose, engine="compiled")),
         ("llvmlite.binding", FAST, lambda pose, path: fb.simulate_many(pose.plant, pose.q[1:], pose)),
         ("llvmlite.binding", FAST, lambda pose, path: fb.robust_curves(pose.plant)),
         ("cvxpy", "convex", lambda pose, path: fb.design(pose, "convex", radius=0.2)),
         ("mujoco", "mujoco", lambda pose, path: fb.simulate(pose.plant, pose, pose, move=fb.Move(engine="mujoco"))),
         ("mujoco", "mujoco", lambda pose, path: fb.agreement_study(pose.plant, poses=1)),
-        ("zarr", MAPS, lambda pose, path: fb.sweep(pose.plant, shape=(3, 3), store=path / "map.zarr")),
-        ("distributed", MAPS, lambda pose, path: fb.sweep(pose.plant, shape=(3, 3), workers=1)),
-        ("plotly.offline", MAPS, lambda pose, path: save_page(fb.sweep(pose.plant, shape=(3, 3)), path / "map.html")),
+        ("zarr", MAPS, lambda pose, path: tiny(pose, store=path / "map.zarr")),
+        ("plotly.offline", MAPS, lambda pose, path: save_page(tiny(pose), path / "map.html")),
         ("control", "control", lambda pose, path: fb.linearise(pose).to_control()),
     ],
 )

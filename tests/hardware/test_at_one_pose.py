@@ -9,13 +9,13 @@ import pytest
 
 import flexbase as fb
 from flexbase.errors import InputError
-from flexbase.model.loop import Loop
+from flexbase.model.loop import Gain, Loop
 from flexbase.model.sensing import Sensing
 from flexbase.report.figures.region import draw_validity
 from flexbase.sampled.controller import pd_with_gain
 from flexbase.sampled.verdict import hardware_verdict
 from flexbase.study.running.comparison import compare
-from flexbase.study.running.region import SAFE, STABLE, UNSTABLE, region, validity
+from flexbase.study.running.region import SAFE, STABLE, UNSTABLE, region
 from flexbase.study.running.safe_gain import safe_gain
 from flexbase.synthesis import controller_for
 
@@ -68,7 +68,7 @@ def test_region_by_single_verdicts(paper_pose: fb.Pose) -> None:
     E = fb.design(paper_pose, natural_frequency=346.8).E
     gains = fb.Gains(0.2 * paper_pose.arm.gains.stiffness, 0.45 * paper_pose.arm.gains.damping)  # type: ignore[union-attr]
     controller = pd_with_gain(paper_pose, FAST, gains, E, "exact")
-    found = validity(controller, gains, half_width=0.12, shape=(3, 5), workers=1)
+    found = region(paper_pose, None, Loop(Gain(E), gains, FAST), half_width=0.12, shape=(3, 5))
     assert found.grade.shape == (5, 3)
     for (row, column), grade in np.ndenumerate(found.grade):
         if grade == 0:
@@ -77,7 +77,7 @@ def test_region_by_single_verdicts(paper_pose: fb.Pose) -> None:
         verdict = hardware_verdict(pd_with_gain(pose, FAST, gains, E, ""), brief=True)
         safe = verdict.stable and verdict.has_margin and verdict.survives
         assert grade == (SAFE if safe else STABLE if verdict.stable else UNSTABLE)
-    frozen = validity(controller, half_width=0.12, shape=(3, 3), workers=1)
+    frozen = region(paper_pose, controller, half_width=0.12, shape=(3, 3))
     pose = paper_pose.plant.at_tip([frozen.x[0], frozen.y[0]], near=paper_pose.q[1:])
     assert (frozen.grade[0, 0] >= STABLE) == (hardware_verdict(controller, pose, changes=()).stable)
     assert frozen.what == "controller"
@@ -85,7 +85,7 @@ def test_region_by_single_verdicts(paper_pose: fb.Pose) -> None:
     assert "design tip" in found.summary()
     assert draw_validity(found).axes
     with pytest.raises(InputError, match="half_width"):
-        validity(controller, half_width=-1.0)
+        region(paper_pose, controller, half_width=-1.0)
 
 
 def test_a_method_that_is_pd_with_e_keeps_e_alone(paper_pose: fb.Pose) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +22,13 @@ FAST = Sensing(rate=4000.0)
 
 
 def test_cells_are_single_verdicts(paper: fb.Plant) -> None:
-    found = hardware_map(paper, "none", (4, 3), loop=Loop(sensing=FAST), bounds=(-0.1, 0.5, -0.4, 0.4), workers=1)
+    found = hardware_map(
+        paper,
+        "none",
+        fb.Cells(shape=(4, 3), bounds=(-0.1, 0.5, -0.4, 0.4)),
+        loop=Loop(sensing=FAST),
+        execution=fb.Execution(workers=1),
+    )
     assert found["spectral_radius"].dims == ("y", "x")
     reached = 0
     for j, y in enumerate(found["y"].values):
@@ -54,25 +61,40 @@ def test_path_and_given_gain(paper: fb.Plant, paper_pose: fb.Pose) -> None:
 def test_stopped_and_gone_on_with(paper: fb.Plant, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """An interruption costs its block; the second run computes the others alone; another recipe is refused."""
     monkeypatch.setattr(module, "BLOCK", 4)
-    store, seen = tmp_path / "m.zarr", []
-    options = {"loop": Loop(sensing=FAST), "bounds": (0.1, 0.5, -0.4, 0.4), "store": store, "workers": 1}
+    seen = []
+    cells = fb.Cells(shape=(4, 3), bounds=(0.1, 0.5, -0.4, 0.4))
+    kept = fb.Execution(store=tmp_path / "m.zarr", workers=1)
+    loop = Loop(sensing=FAST)
 
-    def stop(done: int, total: int) -> None:
+    def stop(what: str, done: int, total: int) -> None:
         if done >= 4:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        hardware_map(paper, "none", (4, 3), progress=stop, **options)
-    found = hardware_map(
-        paper, "none", (4, 3), resume=True, progress=lambda done, total: seen.append((done, total)), **options
-    )
-    assert seen == [(4, 12), (8, 12), (12, 12)]
-    whole = hardware_map(paper, "none", (4, 3), **{**options, "store": None})
+        hardware_map(paper, "none", cells, loop=loop, execution=kept, progress=stop)
+    again = replace(kept, resume=True)
+    found = hardware_map(paper, "none", cells, loop=loop, execution=again, progress=lambda *told: seen.append(told))
+    assert seen == [("cells", 4, 12), ("cells", 8, 12), ("cells", 12, 12)]
+    whole = hardware_map(paper, "none", cells, loop=loop, execution=fb.Execution(workers=2))
+    assert list(whole.data_vars) == list(found.data_vars)
     np.testing.assert_array_equal(found["spectral_radius"].values, whole["spectral_radius"].values)
     with pytest.raises(InputError, match="sensing"):
-        hardware_map(paper, "none", (4, 3), resume=True, **{**options, "loop": Loop(sensing=Sensing(rate=2000.0))})
+        hardware_map(paper, "none", cells, loop=Loop(sensing=Sensing(rate=2000.0)), execution=again)
     with pytest.raises(InputError, match="nothing to resume"):
-        hardware_map(paper, "none", (4, 3), resume=True, **{**options, "store": None})
+        hardware_map(paper, "none", cells, execution=fb.Execution(resume=True))
+
+
+@pytest.mark.parametrize(
+    ("cells", "said"),
+    [
+        (fb.Cells(over="joints"), "over: verdicts are mapped over tip"),
+        (fb.Cells(vary={"payload": (0.0, 1.0, 2)}), "vary: verdicts are on the plant as it is"),
+        ((4, 3), "cells: tuple given. Give a Cells"),
+    ],
+)
+def test_what_a_map_of_verdicts_cannot_vary(paper: fb.Plant, cells: object, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        hardware_map(paper, "none", cells)  # type: ignore[arg-type]
 
 
 def test_a_path_s_table_has_a_heading_over_every_figure(paper: fb.Plant) -> None:
@@ -91,5 +113,7 @@ def test_a_path_s_table_has_a_heading_over_every_figure(paper: fb.Plant) -> None
 
 
 def test_a_map_says_what_was_judged(paper: fb.Plant) -> None:
-    found = hardware_map(paper, "none", (3, 3), loop=Loop(sensing=FAST), workers=1)
+    found = hardware_map(
+        paper, "none", fb.Cells(shape=(3, 3)), loop=Loop(sensing=FAST), execution=fb.Execution(workers=1)
+    )
     assert found.attrs["judged"] == "method none at 4000 Hz"

@@ -306,7 +306,7 @@ def test_bundled_robots(robot):
 
 def test_the_map_has_the_same_number(paper, paper_pose):
     """The measure passivity_shortage, compiled and in rows, is the exact verdict's number, to 1e-10 of it."""
-    chart = fb.sweep(paper, ["passivity_shortage", "shortage"], shape=(7, 7))
+    chart = fb.sweep(paper, ["passivity_shortage", "shortage"], fb.Cells(shape=(7, 7)))
     good = np.argwhere(chart.status.values == 0)
     assert len(good) > 10
     for i, j in good[::3]:

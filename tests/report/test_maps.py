@@ -38,7 +38,7 @@ def across(plant, point) -> float:
 
 def test_the_zero_contour_lies_on_robust_arm_configurations(paper):
     """A quarter of a cell to either side of the drawn line the residue's skew part has both signs."""
-    chart = fb.sweep(paper, shape=(121, 121))
+    chart = fb.sweep(paper, cells=fb.Cells(shape=(121, 121)))
     cell = float(chart.x[1] - chart.x[0])
     (ax, *_) = plot(chart).axes
     points = np.concatenate(blue_lines(ax))
@@ -82,7 +82,7 @@ def test_outlines_hold_the_marked_cells_and_no_others():
 
 def test_hatches_mark_cells_without_a_value_and_hide_none(paper):
     """Where no gain aligns the mode the design's gain is hatched, and robustness is drawn all the same."""
-    chart = fb.sweep(paper, ("robustness", "exact_gain"), shape=(61, 61))
+    chart = fb.sweep(paper, ("robustness", "exact_gain"), fb.Cells(shape=(61, 61)))
     robust, gain = plot(chart).axes[:2]
     assert hatches(robust) == {PATTERN[UNREACHABLE]}
     assert hatches(gain) == {PATTERN[UNREACHABLE], PATTERN[INFEASIBLE]}
@@ -91,19 +91,19 @@ def test_hatches_mark_cells_without_a_value_and_hide_none(paper):
 
 
 def test_axes_and_colour_bars_have_names_and_units(paper):
-    figure = plot(fb.sweep(paper, ("robustness", "frequency"), shape=(21, 21)))
+    figure = plot(fb.sweep(paper, ("robustness", "frequency"), fb.Cells(shape=(21, 21))))
     one, two, *bars = figure.axes
     assert (one.get_xlabel(), one.get_ylabel(), one.get_aspect()) == ("x [m]", "y [m]", 1.0)
     assert [bar.get_ylabel() for bar in bars] == ["robustness [m/(N s$^{2}$)]", "frequency [rad/s]"]
     assert "zero: the robust arm configuration" in one.get_title("left")
     assert two.get_title("left") == "frequency"
-    joints = plot(fb.sweep(paper, over="joints", shape=(11, 11))).axes[0]
+    joints = plot(fb.sweep(paper, cells=fb.Cells(over="joints", shape=(11, 11)))).axes[0]
     assert (joints.get_xlabel(), joints.get_ylabel(), joints.get_aspect()) == ("q2 [rad]", "q3 [rad]", "auto")
 
 
 def test_slices_share_their_colours_and_name_their_values(paper):
     """Nine payloads: five evenly spaced slices with both ends, drawn by one scale, each the plane itself."""
-    dataset = fb.sweep(paper, shape=(25, 21), vary={"payload": (0.0, 2.0, 9)})
+    dataset = fb.sweep(paper, cells=fb.Cells(shape=(25, 21), vary={"payload": (0.0, 2.0, 9)}))
     figure = plot(dataset)
     titles = [ax.get_title("left") for ax in figure.axes if ax.get_title("left")]
     assert titles == [f"payload = {value:g} kg" for value in (0.0, 0.5, 1.0, 1.5, 2.0)]
@@ -116,7 +116,7 @@ def test_slices_share_their_colours_and_name_their_values(paper):
 
 def test_curves_cross_zero_where_the_arm_is_robust(paper):
     """Along y = -0.25 the skew part of the residue changes sign within a cell's hundredth of each circle."""
-    dataset = fb.sweep(paper, axes=["x"], hold=[-0.25], shape=[400])
+    dataset = fb.sweep(paper, cells=fb.Cells(axes=["x"], hold=[-0.25], shape=[400]))
     (ax, *_) = plot(dataset).axes
     rings = next(line for line in ax.lines if line.get_marker() == "o").get_xdata()
     assert len(rings) == 2
@@ -127,7 +127,9 @@ def test_curves_cross_zero_where_the_arm_is_robust(paper):
 
 
 def test_curves_of_several_modes_share_a_panel():
-    dataset = fb.sweep(fb.load("ur5e-pedestal"), ("frequency",), over="joints", axes=["elbow_joint"], shape=[30])
+    dataset = fb.sweep(
+        fb.load("ur5e-pedestal"), ("frequency",), fb.Cells(over="joints", axes=["elbow_joint"], shape=[30])
+    )
     (ax,) = plot(dataset).axes
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["mode 1", "mode 2"]
     for line, mode in zip(ax.lines, dataset.frequency.values.T, strict=False):
@@ -143,7 +145,7 @@ def test_runs_and_crossings():
 
 
 def test_samples_are_counted_and_placed(paper):
-    dataset = fb.sweep(paper, ("exact_gain",), over="samples", shape=[3000])
+    dataset = fb.sweep(paper, ("exact_gain",), fb.Cells(over="samples", shape=[3000]))
     histogram, cloud = plot(dataset).axes[:2]
     known = np.isfinite(dataset.exact_gain.values)
     shares = sum(bar.get_height() for bar in histogram.patches)
@@ -158,7 +160,7 @@ def test_samples_are_counted_and_placed(paper):
 
 def test_differences_are_centred_and_mark_what_is_lost(paper, paper_pose):
     exact = fb.design(paper_pose, "exact", natural_frequency=346.8)
-    asked = {"measures": ("frequency", "exact_gain"), "shape": (41, 41)}
+    asked = {"measures": ("frequency", "exact_gain"), "cells": fb.Cells(shape=(41, 41))}
     figure = plot(fb.difference(fb.sweep(paper, **asked), fb.sweep(paper, **asked, loop=exact)))
     changed, same = figure.axes[:2]
     mesh = changed.collections[0]
@@ -177,8 +179,8 @@ def test_constants_have_a_scale(values, zero_is):
 
 
 def test_too_many_axes_and_a_single_cell_are_refused_with_a_mend(paper):
-    asked = {"shape": (2, 2), "bounds": (0.3, 0.4, -0.3, -0.2), "vary": {"payload": (0, 1, 2), "stiffness": (1, 2, 2)}}
-    four = fb.sweep(paper, **asked)
+    vary = {"payload": (0, 1, 2), "stiffness": (1, 2, 2)}
+    four = fb.sweep(paper, cells=fb.Cells(shape=(2, 2), bounds=(0.3, 0.4, -0.3, -0.2), vary=vary))
     with pytest.raises(
         fb.InputError, match=r'4 axes \(payload, stiffness, y, x\).*sel\(payload=VALUE, method="nearest"\)'
     ):
@@ -187,18 +189,18 @@ def test_too_many_axes_and_a_single_cell_are_refused_with_a_mend(paper):
     assert "payload = 1 kg" in chart_of(three).heading
     assert len(meshes(plot(three))) == 2
     with pytest.raises(fb.InputError, match="single cell"):
-        plot(fb.sweep(paper, shape=(1, 1)))
+        plot(fb.sweep(paper, cells=fb.Cells(shape=(1, 1))))
 
 
 def test_an_axis_of_one_value_does_not_count(paper):
-    chart = chart_of(fb.sweep(paper, shape=(9, 1), bounds=(0.3, 0.4, -0.25, -0.24)))
+    chart = chart_of(fb.sweep(paper, cells=fb.Cells(shape=(9, 1), bounds=(0.3, 0.4, -0.25, -0.24))))
     assert [axis.name for axis in chart.axes] == ["x"]
     assert chart.heading == "ueda2003, y = -0.25 m"
 
 
 def test_infinite_values_are_told_apart(paper):
     """The highest gain has no bound where all scales are stable: pale, in the key, and no part of the colours."""
-    dataset = fb.sweep(paper, ("highest_gain",), shape=(21, 21))
+    dataset = fb.sweep(paper, ("highest_gain",), fb.Cells(shape=(21, 21)))
     endless = np.isinf(dataset.highest_gain.values)
     assert 20 < endless.sum() < endless.size
     chart = chart_of(dataset)

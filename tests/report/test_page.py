@@ -44,14 +44,14 @@ class Reader(HTMLParser):
 @pytest.fixture(scope="module")
 def results(paper, paper_pose):
     exact = fb.design(paper_pose, "exact", natural_frequency=346.8)
-    plane = fb.sweep(paper, ("robustness", "exact_gain"), shape=(61, 51))
+    plane = fb.sweep(paper, ("robustness", "exact_gain"), fb.Cells(shape=(61, 51)))
     return {
         "plane": plane,
-        "change": fb.difference(plane, fb.sweep(paper, ("robustness",), shape=(61, 51), loop=exact)),
-        "slices": fb.sweep(paper, shape=(31, 25), vary={"payload": (0.0, 2.0, 3)}),
-        "curve": fb.sweep(paper, ("robustness", "frequency"), axes=["x"], hold=[-0.25], shape=[80]),
-        "samples": fb.sweep(paper, ("exact_gain",), over="samples", shape=[400]),
-        "nothing": fb.sweep(paper, shape=(5, 5), bounds=(5.0, 6.0, 5.0, 6.0)),
+        "change": fb.difference(plane, fb.sweep(paper, ("robustness",), fb.Cells(shape=(61, 51)), loop=exact)),
+        "slices": fb.sweep(paper, cells=fb.Cells(shape=(31, 25), vary={"payload": (0.0, 2.0, 3)})),
+        "curve": fb.sweep(paper, ("robustness", "frequency"), fb.Cells(axes=["x"], hold=[-0.25], shape=[80])),
+        "samples": fb.sweep(paper, ("exact_gain",), fb.Cells(over="samples", shape=[400])),
+        "nothing": fb.sweep(paper, cells=fb.Cells(shape=(5, 5), bounds=(5.0, 6.0, 5.0, 6.0))),
     }
 
 
@@ -133,7 +133,7 @@ def test_slices_have_a_slider_and_stand_in_space(results, tmp_path):
 
 def test_large_sweeps_are_thinned(paper, tmp_path):
     """Two layers of 700 x 700: at most 600 along an axis and CELLS in all."""
-    dataset = fb.sweep(paper, ("robustness", "frequency"), shape=(700, 700))
+    dataset = fb.sweep(paper, ("robustness", "frequency"), fb.Cells(shape=(700, 700)))
     save_plot(dataset, tmp_path / "a.html")
     shapes = [decode(panel["data"][0]["z"]).shape for panel in content(tmp_path / "a.html")["panels"]]
     assert sum(rows * columns for rows, columns in shapes) <= CELLS

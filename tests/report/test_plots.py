@@ -54,10 +54,10 @@ def results(paper, paper_pose, recursion, exact) -> dict[str, object]:
         "manipulability": fb.manipulability(paper_pose, exact),
         "torque manipulability": fb.manipulability(paper_pose, exact, "torque"),
         "one axis": fb.manipulability(cart.at([0.1])),
-        "chart": fb.sweep(paper, ("robustness", "compensability", "frequency"), shape=(41, 41)),
-        "compensated chart": fb.sweep(paper, shape=(41, 41), loop=recursion),
-        "joint chart": fb.sweep(paper, ("alignment",), over="joints", shape=(31, 31)),
-        "empty chart": fb.sweep(paper, shape=(5, 5), bounds=(5.0, 6.0, 5.0, 6.0)),
+        "chart": fb.sweep(paper, ("robustness", "compensability", "frequency"), fb.Cells(shape=(41, 41))),
+        "compensated chart": fb.sweep(paper, loop=recursion, cells=fb.Cells(shape=(41, 41))),
+        "joint chart": fb.sweep(paper, ("alignment",), fb.Cells(over="joints", shape=(31, 31))),
+        "empty chart": fb.sweep(paper, cells=fb.Cells(shape=(5, 5), bounds=(5.0, 6.0, 5.0, 6.0))),
     }
 
 

@@ -12,7 +12,7 @@ VARY = {"payload": "uniform(0,3)", "stiffness": "normal(1,0.15)", "damping": 0.9
 
 
 def test_a_map_shows_its_cells_contours_and_shares(paper, tmp_path):
-    found = fb.montecarlo(paper, VARY, redesign=True, shape=(24, 20), samples=100)
+    found = fb.montecarlo(paper, fb.Draws(VARY, samples=100), redesign=True, cells=fb.Cells(shape=(24, 20)))
     figure = fb.plot(found)
     ax, beside = figure.axes[:2]
     drawn = ax.collections[0].get_array()
@@ -29,7 +29,9 @@ def test_a_map_shows_its_cells_contours_and_shares(paper, tmp_path):
 
 def test_contours_lie_where_the_probability_is(paper):
     """Interpolated there, the probability is the contour's, to one draw and the width of a cell's slope."""
-    found = fb.montecarlo(paper, {"stiffness": "normal(1,0.15)"}, criteria=["frequency=280:"], shape=(60, 60))
+    found = fb.montecarlo(
+        paper, {"stiffness": "normal(1,0.15)"}, criteria=["frequency=280:"], cells=fb.Cells(shape=(60, 60))
+    )
     chart = found.dataset["probability"]
     half = [line for line in fb.plot(found).axes[0].lines if line.get_linestyle() == "--"]
     points = np.concatenate([line.get_xydata() for line in half])
@@ -38,7 +40,7 @@ def test_contours_lie_where_the_probability_is(paper):
 
 
 def test_a_pose_shows_criteria_and_who_is_to_blame(paper_pose):
-    found = fb.montecarlo(paper_pose, VARY, criteria=["definite", "frequency=280:"], samples=300)
+    found = fb.montecarlo(paper_pose, fb.Draws(VARY, samples=300), criteria=["definite", "frequency=280:"])
     bars, payload, stiffness = fb.plot(found).axes
     assert [label.get_text() for label in bars.get_yticklabels()] == ["all", "definite", "frequency"]
     assert [bar.get_width() for bar in bars.patches] == pytest.approx([found.at_pose.value, 1.0, found.at_pose.value])
@@ -49,24 +51,23 @@ def test_a_pose_shows_criteria_and_who_is_to_blame(paper_pose):
 
 
 def test_one_axis_is_a_curve_and_three_are_refused(paper):
-    curve = fb.montecarlo(paper, VARY, redesign=True, over="joints", axes=["q3"], shape=(30,), samples=50)
+    curve = fb.montecarlo(
+        paper, fb.Draws(VARY, samples=50), redesign=True, cells=fb.Cells(over="joints", axes=["q3"], shape=(30,))
+    )
     line = fb.plot(curve).axes[0].lines[0]
     assert np.array_equal(line.get_ydata(), curve.dataset["probability"].values, equal_nan=True)
     three = fb.montecarlo(
         fb.load("scara"),
-        VARY,
-        over="joints",
-        axes=["shoulder", "elbow", "turn"],
-        shape=(2, 2, 2),
-        samples=2,
+        fb.Draws(VARY, samples=2),
         criteria="definite",
+        cells=fb.Cells(over="joints", axes=["shoulder", "elbow", "turn"], shape=(2, 2, 2)),
     )
     with pytest.raises(fb.InputError, match="this study has 3 axes"):
         fb.plot(three)
 
 
 def test_a_study_that_was_kept_is_drawn_again(paper, tmp_path):
-    found = fb.montecarlo(paper, VARY, redesign=True, shape=(12, 10), samples=30)
+    found = fb.montecarlo(paper, fb.Draws(VARY, samples=30), redesign=True, cells=fb.Cells(shape=(12, 10)))
     found.save_netcdf(tmp_path / "m.nc")
     kept = fb.open_dataset(tmp_path / "m.nc")
     for name in ("a", "b"):

@@ -80,9 +80,9 @@ def test_one_beta_decides_the_verdict_at_any_damping():
 def test_a_joint_map_of_a_scara_shows_something():
     """Prismatic axes span the reach, not pi; the joints outside the map are bent, so that cells can be judged."""
     scara = flexbase.load("scara")
-    chart = flexbase.sweep(scara, over="joints", shape=(12, 12))
+    chart = flexbase.sweep(scara, cells=flexbase.Cells(over="joints", shape=(12, 12)))
     assert chart["status"].dims == ("elbow", "shoulder")
     assert np.isfinite(chart["robustness"].values).mean() > 0.8
-    lift = flexbase.sweep(scara, over="joints", shape=(5, 5), axes=("elbow", "lift"))["lift"]
+    lift = flexbase.sweep(scara, cells=flexbase.Cells(over="joints", shape=(5, 5), axes=("elbow", "lift")))["lift"]
     assert lift.attrs["units"] == "m"
     assert lift.values.max() < 1.5

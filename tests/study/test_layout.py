@@ -21,7 +21,7 @@ from flexbase.study.layout.targets import read_targets
 from flexbase.study.postures.posture import best_posture
 from flexbase.study.robust_configurations.curves import robust_curves
 from flexbase.sweeps.engine.evaluate import Engine
-from flexbase.sweeps.engine.question import Question
+from flexbase.sweeps.engine.formula import Formula
 
 HOLES = np.array([[0.33, -0.25], [0.33, -0.10], [0.45, -0.10], [0.45, -0.25], [0.39, -0.17]])
 
@@ -31,7 +31,7 @@ def brute_force(plant: Plant, targets: np.ndarray, goal: str, shifts: np.ndarray
     arm = plant.arm
     planar = two_joint_arm(arm.mechanism, arm.task, arm.base.equilibrium)
     assert planar is not None
-    question = Question(arm, (MEASURES["alignment"],), (0, 1), (0.0, 0.0))
+    question = Formula(arm, (MEASURES["alignment"],), (0, 1), (0.0, 0.0))
     everywhere = (targets[None] + shifts[:, None]).reshape(-1, 2)
     best = np.full(len(everywhere), -np.inf)
     for side in (1.0, -1.0):

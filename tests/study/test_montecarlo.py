@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ from flexbase.linear.linearise import modified_inertia
 from flexbase.linear.margins import algebraic_loop_radius, closed_loop_abscissa
 from flexbase.model.base import make_base
 from flexbase.model.loop import Gain
-from flexbase.study.montecarlo import Criterion, Normal, collect, trial
+from flexbase.study.montecarlo import Criterion, Normal, run, trial
 from flexbase.sweeps.cells.parameters import PARAMETERS
 from systems.changed import changed
 
@@ -38,13 +38,13 @@ def test_a_threshold_of_frequency_has_a_known_probability(paper_pose: fb.Pose) -
     nominal = fb.modes(paper_pose).modes[0].frequency
     for wanted in (250.0, 275.0, 300.0):
         found = fb.montecarlo(
-            paper_pose, {"stiffness": "normal(1,0.15)"}, criteria=[f"frequency={wanted}:"], samples=20_000
+            paper_pose, fb.Draws({"stiffness": "normal(1,0.15)"}, samples=20_000), criteria=[f"frequency={wanted}:"]
         )
         true = SOFT.sf((wanted / nominal) ** 2)
         assert 0.05 < true < 0.95
         assert found.at_pose.value == pytest.approx(true, abs=4.0 * np.sqrt(true * (1.0 - true) / 20_000))
         between = fb.montecarlo(
-            paper_pose, {"stiffness": Normal(1.0, 0.15)}, criteria=[f"frequency=:{wanted}"], samples=20_000
+            paper_pose, fb.Draws({"stiffness": Normal(1.0, 0.15)}, samples=20_000), criteria=[f"frequency=:{wanted}"]
         )
         assert between.at_pose.value == pytest.approx(1.0 - found.at_pose.value, abs=1e-12)  # the same draws
 
@@ -55,7 +55,7 @@ def test_the_interval_covers_in_repeated_studies(paper_pose: fb.Pose) -> None:
     covered = 0
     for seed in range(400):
         found = fb.montecarlo(
-            paper_pose, {"stiffness": "normal(1,0.15)"}, criteria="frequency=300:", samples=100, seed=seed
+            paper_pose, fb.Draws({"stiffness": "normal(1,0.15)"}, samples=100, seed=seed), criteria="frequency=300:"
         ).at_pose
         covered += found.lower <= true <= found.upper
     assert 0.93 <= covered / 400 <= 0.99
@@ -67,7 +67,9 @@ def test_a_monotone_criterion_has_a_known_probability(paper_pose: fb.Pose, desig
     rising = [shortage_with(paper_pose, designed.E, "payload", value) for value in payloads]
     assert np.all(np.diff(rising) > 0.0)
     border = brentq(lambda value: shortage_with(paper_pose, designed.E, "payload", value) - 0.01, 0.1, 5.9)
-    found = fb.montecarlo(paper_pose, {"payload": "uniform(0,6)"}, loop=designed, samples=4096, sampling="sobol")
+    found = fb.montecarlo(
+        paper_pose, fb.Draws({"payload": "uniform(0,6)"}, samples=4096, sampling="sobol"), loop=designed
+    )
     assert found.at_pose.value == pytest.approx(border / 6.0, abs=5e-4)
     wider = fb.montecarlo(paper_pose, {"payload": "uniform(0,6)"}, loop=designed, criteria=["robust=0.5"])
     assert wider.at_pose.value == 1.0
@@ -80,7 +82,7 @@ def test_every_draw_is_judged_as_its_own_plant_is(paper_pose: fb.Pose, designed:
     E, gains = 1.15 * designed.E, paper_pose.arm.gains
     assert gains is not None
     criteria = ["definite", "robust=0.03", "stable", "loop=0.95", "frequency=:420"]
-    found = fb.montecarlo(paper_pose, vary, loop=Gain(E), criteria=criteria, samples=150, seed=4)
+    found = fb.montecarlo(paper_pose, fb.Draws(vary, samples=150, seed=4), loop=Gain(E), criteria=criteria)
     verdicts = []
     for draw in range(150):
         plant = paper_pose.plant
@@ -112,7 +114,9 @@ def test_no_variation_is_certain(paper_pose: fb.Pose, designed: fb.Compensator) 
     shaken = {"stiffness": "normal(1,0.15)", "payload": "uniform(0,3)"}
     assert fb.montecarlo(paper_pose, shaken, loop=elsewhere).at_pose.value < 0.01
     assert fb.montecarlo(paper_pose, shaken, loop=designed).at_pose.value > 0.5
-    chart = fb.montecarlo(paper_pose.plant, still, criteria=["frequency=280:"], shape=(20, 20), samples=3).dataset
+    chart = fb.montecarlo(
+        paper_pose.plant, fb.Draws(still, samples=3), criteria=["frequency=280:"], cells=fb.Cells(shape=(20, 20))
+    ).dataset
     judged = chart["status"].values == 0
     assert set(np.unique(chart["probability"].values[judged])) == {0.0, 1.0}
     assert np.array_equal(chart["probability"].values[judged] == 1.0, chart["nominal"].values[judged] == 1)
@@ -122,7 +126,7 @@ def test_springs_do_not_decide_on_robustness_of_one_mode(paper_pose: fb.Pose, de
     """With one base joint a and b hang on masses alone; a tolerance at rounding still holds."""
     vary = {"stiffness": "normal(1,0.3)", "damping": "uniform(0,3)"}
     strict = ["robust=1e-12", "frequency=300:"]
-    found = fb.montecarlo(paper_pose, vary, loop=designed, criteria=strict, samples=500).by_criterion
+    found = fb.montecarlo(paper_pose, fb.Draws(vary, samples=500), loop=designed, criteria=strict).by_criterion
     assert found["robust"].value == 1.0
     assert 0.1 < found["frequency"].value < 0.9
 
@@ -135,15 +139,17 @@ def test_a_base_joint_of_its_own_decides_where_modes_couple() -> None:
     plant = fb.Plant(replace(gantry.arm, base=undamped))
     pose = plant.at([0.4, -1.2, 1.4, -0.6, -1.4, 0.3])
     names = plant.arm.mechanism.joint_names
-    shortage = fb.montecarlo(pose, {"stiffness": 1.0}, criteria=["shortage=:0"], samples=1)
+    shortage = fb.montecarlo(pose, fb.Draws({"stiffness": 1.0}, samples=1), criteria=["shortage=:0"])
     assert shortage.at_pose.value == 0.0
     before = fb.sweep(
-        plant, ["shortage"], over="joints", shape=(1, 1), axes=names[2:4], bounds=_here(pose, 0, 1), hold=pose.q[2:]
+        plant,
+        ["shortage"],
+        fb.Cells(over="joints", shape=(1, 1), axes=names[2:4], bounds=_here(pose, 0, 1), hold=pose.q[2:]),
     )
     bound = float(before["shortage"].values.item())
     limit = [Criterion("near", "shortage", bound * (1.0 - 1e-9), bound * (1.0 + 1e-9))]
-    whole = fb.montecarlo(pose, {"stiffness": "normal(1,0.2)"}, criteria=limit, samples=50)
-    single = fb.montecarlo(pose, {f"stiffness.{names[0]}": "normal(1,0.2)"}, criteria=limit, samples=50)
+    whole = fb.montecarlo(pose, fb.Draws({"stiffness": "normal(1,0.2)"}, samples=50), criteria=limit)
+    single = fb.montecarlo(pose, fb.Draws({f"stiffness.{names[0]}": "normal(1,0.2)"}, samples=50), criteria=limit)
     assert (whole.at_pose.value, single.at_pose.value) == (1.0, 0.0)
 
 
@@ -153,9 +159,12 @@ def _here(pose: fb.Pose, *joints: int) -> list[float]:
 
 def test_a_map_holds_known_probabilities_and_shares(paper: fb.Plant) -> None:
     """Cell by cell P(f >= (w/omega)^2), omega of `sweep`, within 4 sigma; shares of the workspace follow."""
-    chart = fb.sweep(paper, ["frequency"], shape=(31, 33))
+    chart = fb.sweep(paper, ["frequency"], fb.Cells(shape=(31, 33)))
     found = fb.montecarlo(
-        paper, {"stiffness": "normal(1,0.15)"}, criteria=["frequency=280:"], shape=(31, 33), samples=3000
+        paper,
+        fb.Draws({"stiffness": "normal(1,0.15)"}, samples=3000),
+        criteria=["frequency=280:"],
+        cells=fb.Cells(shape=(31, 33)),
     )
     omega = chart["frequency"].values[..., 0]
     assert np.array_equal(found.dataset["status"].values, chart["status"].values)
@@ -176,12 +185,15 @@ def test_intervals_of_the_workspace_cover(paper: fb.Plant) -> None:
 
     That is 2 sigma below 95 %. A binomial interval over cells would fail: it takes cells for independent.
     """
-    omega = fb.sweep(paper, ["frequency"], shape=(25, 25))["frequency"].values[..., 0]
+    omega = fb.sweep(paper, ["frequency"], fb.Cells(shape=(25, 25)))["frequency"].values[..., 0]
     true = SOFT.sf((280.0 / omega[np.isfinite(omega)]) ** 2)
     covered = np.zeros(4)
     for seed in range(200):
         found = fb.montecarlo(
-            paper, {"stiffness": "normal(1,0.15)"}, criteria="frequency=280:", shape=(25, 25), samples=120, seed=seed
+            paper,
+            fb.Draws({"stiffness": "normal(1,0.15)"}, samples=120, seed=seed),
+            criteria="frequency=280:",
+            cells=fb.Cells(shape=(25, 25)),
         )
         mean = found.expected_share
         naive = 1.96 * np.sqrt(mean.value * (1.0 - mean.value) / (true.size * 120))
@@ -197,11 +209,11 @@ def test_intervals_of_the_workspace_cover(paper: fb.Plant) -> None:
 def test_intervals_of_the_workspace_cover_with_several_parameters(paper: fb.Plant) -> None:
     """The same where cells fail in another order in each draw; the truth is a study with 60 000 draws."""
     vary = {"payload": "uniform(0,3)", "link_mass.q3": "lognormal(1,0.2)", "link_com.q2": "normal(1,0.1)"}
-    asked = {"redesign": True, "shape": (21, 21), "criteria": ["definite", "robust=0.05"]}
-    truth = fb.montecarlo(paper, vary, samples=60_000, seed=999, **asked)
+    asked = {"redesign": True, "cells": fb.Cells(shape=(21, 21)), "criteria": ["definite", "robust=0.05"]}
+    truth = fb.montecarlo(paper, fb.Draws(vary, samples=60_000, seed=999), **asked)
     covered = np.zeros(3)
     for seed in range(60):
-        found = fb.montecarlo(paper, vary, samples=150, seed=seed, **asked)
+        found = fb.montecarlo(paper, fb.Draws(vary, samples=150, seed=seed), **asked)
         pairs = [(found.expected_share, truth.expected_share)]
         pairs += [(found.share_at_least(level), truth.share_at_least(level)) for level in (0.5, 0.9)]
         covered += [one.lower <= other.value <= one.upper for one, other in pairs]
@@ -209,14 +221,16 @@ def test_intervals_of_the_workspace_cover_with_several_parameters(paper: fb.Plan
 
 
 def test_blocks_threads_and_engines_change_nothing(paper: fb.Plant, monkeypatch: pytest.MonkeyPatch) -> None:
-    vary = {"stiffness": "normal(1,0.15)", "payload": "uniform(0,3)"}
-    asked = {"redesign": True, "shape": (23, 29), "samples": 301, "criteria": ["robust", "loop"]}
-    whole = fb.montecarlo(paper, vary, engine="compiled", **asked).dataset
-    rows = fb.montecarlo(paper, vary, engine="rows", **asked).dataset
+    vary = fb.Draws({"stiffness": "normal(1,0.15)", "payload": "uniform(0,3)"}, samples=301)
+    asked = {"redesign": True, "cells": fb.Cells(shape=(23, 29)), "criteria": ["robust", "loop"]}
+    whole = fb.montecarlo(paper, vary, **asked, execution=fb.Execution(engine="compiled")).dataset
+    rows = fb.montecarlo(paper, vary, **asked, execution=fb.Execution(engine="rows")).dataset
     monkeypatch.setattr(trial, "TOGETHER", 97)
-    monkeypatch.setattr(collect, "TOGETHER", 97)
-    monkeypatch.setattr(collect, "LEAST_BLOCK", 7)
-    pieces = fb.montecarlo(paper, vary, engine="compiled", **asked).dataset
+    monkeypatch.setattr(run, "TOGETHER", 97)
+    monkeypatch.setattr(run, "LEAST_BLOCK", 7)
+    pieces = fb.montecarlo(paper, vary, **asked, execution=fb.Execution(engine="compiled")).dataset
+    apart = fb.montecarlo(paper, vary, **asked, execution=fb.Execution(engine="compiled", workers=2)).dataset
+    assert pieces.identical(apart)
     assert whole.drop_attrs().identical(pieces.drop_attrs())
     assert whole.attrs == pieces.attrs
     for name in ("held", "status", "share"):
@@ -226,7 +240,7 @@ def test_blocks_threads_and_engines_change_nothing(paper: fb.Plant, monkeypatch:
 def test_the_design_of_each_cell_is_that_of_a_pose(paper: fb.Plant) -> None:
     """A cell of a map with `redesign` is the study of `fb.design` at its pose; without a design it fails."""
     vary = {"payload": "uniform(0,3)", "link_mass": "lognormal(1,0.05)"}
-    chart = fb.montecarlo(paper, vary, redesign=True, shape=(9, 9), samples=400).dataset
+    chart = fb.montecarlo(paper, fb.Draws(vary, samples=400), redesign=True, cells=fb.Cells(shape=(9, 9))).dataset
     status, seen = chart["status"].values, set()
     for row, column in zip(*np.nonzero((status == 0) | (status == 4)), strict=True):
         pose = paper.at_tip([float(chart["x"][column]), float(chart["y"][row])])
@@ -239,7 +253,7 @@ def test_the_design_of_each_cell_is_that_of_a_pose(paper: fb.Plant) -> None:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", fb.FlexbaseWarning)  # algebraic loops of radius 1 and more
             E = fb.design(pose, method="exact")
-        assert fb.montecarlo(pose, vary, loop=E, samples=400).at_pose.value == pytest.approx(
+        assert fb.montecarlo(pose, fb.Draws(vary, samples=400), loop=E).at_pose.value == pytest.approx(
             float(chart["probability"][row, column]), abs=1.0 / 400
         )
     assert seen == {0, 4}
@@ -249,20 +263,25 @@ def test_the_design_of_each_cell_is_that_of_a_pose(paper: fb.Plant) -> None:
 def test_joint_maps_poses_with_another_equilibrium_and_solved_grids(paper: fb.Plant) -> None:
     """Over joints the base's equilibrium is the plant's; a pose keeps its own; six axes go by inverse kinematics."""
     vary = {"payload": "uniform(0,3)"}
-    found = fb.montecarlo(paper, vary, over="joints", shape=(5, 4), samples=50, criteria=["frequency=280:"])
+    found = fb.montecarlo(
+        paper, fb.Draws(vary, samples=50), criteria=["frequency=280:"], cells=fb.Cells(over="joints", shape=(5, 4))
+    )
     assert found.dataset["probability"].dims == ("q3", "q2")
     q = [float(found.dataset["q2"][1]), float(found.dataset["q3"][2])]
     assert float(found.dataset["probability"][2, 1]) == pytest.approx(
-        fb.montecarlo(paper.at(q), vary, samples=50, criteria=["frequency=280:"]).at_pose.value
+        fb.montecarlo(paper.at(q), fb.Draws(vary, samples=50), criteria=["frequency=280:"]).at_pose.value
     )
-    turned = fb.montecarlo(paper.at([0.7, *q]), vary, samples=50, criteria=["manipulability=:1e9"])
+    turned = fb.montecarlo(paper.at([0.7, *q]), fb.Draws(vary, samples=50), criteria=["manipulability=:1e9"])
     assert turned.at_pose.value == 1.0
     arm = fb.load("ur5e-pedestal")
     six = fb.montecarlo(
-        arm, vary, shape=(3, 2), bounds=[0.3, 0.5, 0.1, 0.3], hold=[0.3], samples=20, criteria=["frequency=101.5:"]
+        arm,
+        fb.Draws(vary, samples=20),
+        criteria=["frequency=101.5:"],
+        cells=fb.Cells(shape=(3, 2), bounds=[0.3, 0.5, 0.1, 0.3], hold=[0.3]),
     )
     assert (six.dataset["status"].values == 0).all()
-    chart = fb.sweep(arm, ["frequency"], shape=(3, 2), bounds=[0.3, 0.5, 0.1, 0.3], hold=[0.3])
+    chart = fb.sweep(arm, ["frequency"], fb.Cells(shape=(3, 2), bounds=[0.3, 0.5, 0.1, 0.3], hold=[0.3]))
     assert np.array_equal(six.dataset["nominal"].values == 1, chart["frequency"].values[..., 0] >= 101.5)
 
 
@@ -271,7 +290,7 @@ def test_results_speak(paper: fb.Plant, paper_pose: fb.Pose, designed: fb.Compen
     import xarray
 
     vary = {"payload": "uniform(0,3)", "stiffness.q1": "normal(1,0.1)"}
-    found = fb.montecarlo(paper, vary, redesign=True, shape=(7, 6), samples=40)
+    found = fb.montecarlo(paper, fb.Draws(vary, samples=40), redesign=True, cells=fb.Cells(shape=(7, 6)))
     plain = found.to_dict()
     assert np.shape(plain["probability"]) == (6, 7)
     assert plain["share_at_least"]["0.95"]["value"] == found.share_at_least(0.95).value
@@ -287,7 +306,7 @@ def test_results_speak(paper: fb.Plant, paper_pose: fb.Pose, designed: fb.Compen
     with xarray.open_dataset(tmp_path / "m.nc", engine="scipy") as kept:
         assert np.array_equal(kept["share"], found.dataset["share"])
         assert kept["criterion"].values.astype(str).tolist() == ["definite", "robust"]
-    one = fb.montecarlo(paper_pose, vary, loop=designed, samples=40)
+    one = fb.montecarlo(paper_pose, fb.Draws(vary, samples=40), loop=designed)
     one.save_csv(tmp_path / "p.csv")
     draws = np.genfromtxt(tmp_path / "p.csv", delimiter=",", names=True, deletechars="")
     assert draws["holds"].mean() == one.at_pose.value
@@ -301,8 +320,8 @@ def test_results_speak(paper: fb.Plant, paper_pose: fb.Pose, designed: fb.Compen
         ({"vary": {}}, "vary: nothing varies"),
         ({"vary": {"stifness": 1}}, 'vary: no parameter "stifness". Did you mean "stiffness"'),
         ({"samples": 0}, "samples: 0 given. Give a whole number from 1"),
-        ({"samples": 10.0}, "samples: 10.0 given"),
-        ({"seed": -1}, "seed: -1 given"),
+        ({"samples": 10.0}, "samples: 10.0 is not a whole number"),
+        ({"seed": -1}, "seed: -1 is below 0"),
         ({"sampling": "halton"}, 'sampling: "halton" is unknown'),
         ({"criteria": []}, "criteria: none is given"),
         ({"criteria": ["robust", "robust=0.1"]}, 'criteria: "robust" is given twice'),
@@ -316,6 +335,8 @@ def test_results_speak(paper: fb.Plant, paper_pose: fb.Pose, designed: fb.Compen
         ({"redesign": True, "robot": "ur5e-gantry"}, "measure exact_gain: one base joint"),
         ({"loop": Gain(np.eye(3))}, r"E has shape \(3, 3\), but ueda2003 has 2 arm joints"),
         ({"shape": (5000, 5000)}, "25000000 cells, up to 4000000"),
+        ({"over": "samples"}, 'over: "samples" has no cells'),
+        ({"store": "a.zarr"}, "store: a Monte Carlo study is kept in memory"),
         ({"engine": "gpu"}, 'engine: "gpu" is unknown'),
         ({"pose": True, "shape": (3, 3)}, "shape: belongs to a map, but a pose is given"),
     ],
@@ -323,8 +344,14 @@ def test_results_speak(paper: fb.Plant, paper_pose: fb.Pose, designed: fb.Compen
 def test_wrong_input_is_named(asked: dict, said: str) -> None:
     plant = fb.load(asked.pop("robot", "ueda2003"))
     where = plant.at_tip([0.33, -0.25]) if asked.pop("pose", False) else plant
+    vary = asked.pop("vary", {"stiffness": "normal(1,0.1)"})
+    draws = {name: asked.pop(name) for name in ("samples", "seed", "sampling") if name in asked}
+    parts = {
+        name: kind(**{one.name: asked.pop(one.name) for one in fields(kind) if one.name in asked})
+        for name, kind in {"cells": fb.Cells, "execution": fb.Execution}.items()
+    }
     with pytest.raises(fb.InputError, match=said):
-        fb.montecarlo(where, **{"vary": {"stiffness": "normal(1,0.1)"}, **asked})
+        fb.montecarlo(where, fb.Draws(vary, **draws), **parts, **asked)
 
 
 def test_stable_needs_gains(paper: fb.Plant) -> None:

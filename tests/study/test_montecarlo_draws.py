@@ -9,7 +9,7 @@ from scipy import stats
 import flexbase as fb
 from flexbase.study.montecarlo import Fixed, Lognormal, Normal, Uniform
 from flexbase.study.montecarlo.distribution import Distribution, read_distribution, written
-from flexbase.study.montecarlo.draws import draw
+from flexbase.study.montecarlo.draws import Draws
 from flexbase.study.montecarlo.interval import expected_share, probability_interval
 from flexbase.sweeps.cells.parameters import PARAMETERS
 
@@ -25,7 +25,7 @@ TRUTH = [
 
 
 def drawn(one: Distribution, name: str, count: int = 20_000, sampling: str = "random", seed: int = 1) -> np.ndarray:
-    return draw({name: one}, PARAMETERS, count, sampling, seed)[0]
+    return Draws({name: one}, samples=count, seed=seed, sampling=sampling).drawn(PARAMETERS)[0]
 
 
 @pytest.mark.parametrize(
@@ -48,13 +48,17 @@ def test_no_variation() -> None:
 
 def test_a_parameters_draws_are_its_own() -> None:
     """More samples go on with the same ones; another parameter leaves them; seeds and names change them."""
+
+    def of(vary: dict[str, Distribution], count: int, seed: int) -> np.ndarray:
+        return Draws(vary, samples=count, seed=seed).drawn(PARAMETERS)
+
     one = {"stiffness": Normal(1.0, 0.15)}
     two = {"payload": Uniform(0.0, 3.0), **one}
-    few, many = draw(one, PARAMETERS, 50, "random", 7), draw(two, PARAMETERS, 500, "random", 7)
+    few, many = of(one, 50, 7), of(two, 500, 7)
     assert np.array_equal(few[0], many[1, :50])
     assert np.abs(np.corrcoef(many)[0, 1]) < 0.15
-    assert not np.any(draw(one, PARAMETERS, 50, "random", 8) == few)
-    same = draw({"stiffness": Uniform(0.0, 1.0), "damping": Uniform(0.0, 1.0)}, PARAMETERS, 50, "random", 7)
+    assert not np.any(of(one, 50, 8) == few)
+    same = of({"stiffness": Uniform(0.5, 1.5), "damping": Uniform(0.5, 1.5)}, 50, 7)
     assert not np.any(same[0] == same[1])
 
 

@@ -18,7 +18,7 @@ from flexbase.study.postures.objective import make_objective
 from flexbase.study.postures.posture import best_posture
 from flexbase.sweeps.cells.parameters import configuration_of
 from flexbase.sweeps.engine.evaluate import Engine
-from flexbase.sweeps.engine.question import Question
+from flexbase.sweeps.engine.formula import Formula
 from systems.planar import planar
 
 THREE = {1: [0.1, 0.3, 0.25, 0.2], 2: [0.1, 0.15, 0.3, 0.25, 0.2]}  # three arm joints on one or two base joints
@@ -27,7 +27,7 @@ THREE = {1: [0.1, 0.3, 0.25, 0.2], 2: [0.1, 0.15, 0.3, 0.25, 0.2]}  # three arm 
 def worst_of(plant: Plant, joints: np.ndarray, measure: str) -> np.ndarray:
     """The worst mode's value of rows of joints, by NumPy rows: no kernel, no derivative."""
     n = plant.arm.n
-    question = Question(plant.arm, (MEASURES[measure],), tuple(range(n)), (0.0,) * n)
+    question = Formula(plant.arm, (MEASURES[measure],), tuple(range(n)), (0.0,) * n)
     return Engine(question).run(np.ascontiguousarray(joints.T)).values[measure].min(axis=1)
 
 
@@ -63,7 +63,7 @@ def test_no_sampled_posture_is_better(m: int, measure: str, target: list[float])
     values = (
         worst_of(plant, rows, measure)
         if MEASURES[measure].per_mode
-        else Engine(Question(plant.arm, (MEASURES[measure],), (0, 1, 2), (0.0,) * 3)).run(rows.T.copy()).values[measure]
+        else Engine(Formula(plant.arm, (MEASURES[measure],), (0, 1, 2), (0.0,) * 3)).run(rows.T.copy()).values[measure]
     )
     spread = float(np.nanmax(values) - np.nanmin(values))
     assert found.best.value >= np.nanmax(values) - 1e-10 * spread

@@ -54,11 +54,8 @@ def test_curves_are_complete_and_nothing_else(plant: Plant) -> None:
         chart = fb.sweep(
             plant,
             ["turn"],
-            "joints",
-            (4001, 2),
-            axes=(second, first),
-            bounds=[-3.1, 3.1, line, line + edge],
-            engine="rows",
+            fb.Cells(over="joints", shape=(4001, 2), axes=(second, first), bounds=[-3.1, 3.1, line, line + edge]),
+            execution=fb.Execution(engine="rows"),
         )
         ticks = chart[second].values
         for mode in range(plant.arm.m):
@@ -174,7 +171,9 @@ def test_where_there_are_none_it_says_how_near_one_gets() -> None:
     """SCARA: no posture comes near; a sweep of 2e5 samples agrees on the largest alignment to 1 %."""
     plant = fb.load("scara")
     found = robust_points(plant, count=300)
-    chart = fb.sweep(plant, ["alignment"], "samples", (200_000,), engine="rows")
+    chart = fb.sweep(
+        plant, ["alignment"], fb.Cells(over="samples", shape=(200_000,)), execution=fb.Execution(engine="rows")
+    )
     assert len(found.joints) == 0
     assert found.nearest == pytest.approx(float(np.nanmax(chart.alignment.values)), rel=1e-2)
     assert found.to_dict()["nearest_alignment"] == found.nearest

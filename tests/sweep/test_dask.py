@@ -26,7 +26,7 @@ def bits(store: Path) -> dict[str, bytes]:
 @pytest.fixture(scope="module")
 def whole(paper: fb.Plant, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("whole") / "map.zarr"
-    fb.sweep(paper, shape=SHAPE, store=path)
+    fb.sweep(paper, cells=fb.Cells(shape=SHAPE), execution=fb.Execution(store=path))
     return path
 
 
@@ -49,25 +49,30 @@ def test_killed_worker_costs_its_block(paper: fb.Plant, whole: Path, tmp_path: P
     options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None, "silence_logs": 60}
     with distributed.LocalCluster(**options) as cluster:
 
-        def kill(done: int, total: int) -> None:
+        def kill(what: str, done: int, total: int) -> None:
             if not killed and 0 < done < total:
                 killed.append(cluster.workers[0].pid)
                 os.kill(killed[0], signal.SIGKILL)
 
-        fb.sweep(paper, shape=SHAPE, store=path, scheduler=cluster.scheduler_address, progress=kill)
+        fb.sweep(
+            paper,
+            progress=kill,
+            cells=fb.Cells(shape=SHAPE),
+            execution=fb.Execution(store=path, scheduler=cluster.scheduler_address),
+        )
     assert killed
     assert sum(mark.is_file() for mark in (path / FINISHED / "c").rglob("*")) == 5
     assert bits(path) == bits(whole)
 
 
 def test_results_in_memory(paper: fb.Plant) -> None:
-    found = fb.sweep(paper, ["alignment"], shape=(50, 40), workers=1)
+    found = fb.sweep(paper, ["alignment"], fb.Cells(shape=(50, 40)), execution=fb.Execution(workers=1))
     assert np.array_equal(
-        found["alignment"], fb.sweep(paper, ["alignment"], shape=(50, 40))["alignment"], equal_nan=True
+        found["alignment"], fb.sweep(paper, ["alignment"], fb.Cells(shape=(50, 40)))["alignment"], equal_nan=True
     )
 
 
 @pytest.mark.slow
 def test_no_scheduler_there(paper: fb.Plant) -> None:
     with pytest.raises(fb.InputError, match=r"scheduler: no Dask scheduler answers at tcp://127\.0\.0\.1:9"):
-        fb.sweep(paper, shape=(5, 5), scheduler="tcp://127.0.0.1:9")
+        fb.sweep(paper, cells=fb.Cells(shape=(5, 5)), execution=fb.Execution(scheduler="tcp://127.0.0.1:9"))

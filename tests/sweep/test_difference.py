@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,7 +12,7 @@ from flexbase.sweeps.answers.angles import crossing
 from flexbase.sweeps.answers.chart import chart_of, thinned
 from flexbase.sweeps.engine.status import GAINED, LOST, OK, UNREACHABLE
 
-ASKED = {"measures": ("robustness", "frequency", "exact_gain"), "shape": (41, 41)}
+ASKED = {"measures": ("robustness", "frequency", "exact_gain"), "cells": fb.Cells(shape=(41, 41))}
 
 
 @pytest.fixture(scope="module")
@@ -72,7 +74,7 @@ def test_nothing_changes_against_itself(pair):
 
 
 def test_angles_differ_by_the_shorter_way(paper, exact):
-    asked = {"measures": ["turn"], "shape": (31, 31)}
+    asked = {"measures": ["turn"], "cells": fb.Cells(shape=(31, 31))}
     before, after = fb.sweep(paper, **asked), fb.sweep(paper, **asked, loop=exact)
     change = fb.difference(before, after).turn.values
     known = np.isfinite(change)
@@ -85,15 +87,16 @@ def test_angles_differ_by_the_shorter_way(paper, exact):
 @pytest.mark.parametrize(
     ("other", "said"),
     [
-        ({"measures": ["robustness"], "shape": (41, 40)}, "y has 41 values.*40 values.*same bounds and shape"),
-        ({"measures": ["robustness"], "shape": (41, 41), "bounds": (0, 1, 0, 1)}, "Give both sweeps the same"),
-        ({"measures": ["damping"], "shape": (41, 41)}, "after has damping. Sweep a measure in both"),
-        ({"measures": ["robustness"], "shape": (4, 4), "over": "joints"}, "before has the axes y, x, after q3, q2"),
+        ({"shape": (41, 40)}, "y has 41 values.*40 values.*same bounds and shape"),
+        ({"shape": (41, 41), "bounds": (0, 1, 0, 1)}, "Give both sweeps the same"),
+        ({"measures": ["damping"]}, "after has damping. Sweep a measure in both"),
+        ({"shape": (4, 4), "over": "joints"}, "before has the axes y, x, after q3, q2"),
     ],
 )
 def test_other_cells_are_refused(paper, pair, other, said):
+    measures = other.pop("measures", ["robustness"])
     with pytest.raises(fb.InputError, match=said):
-        fb.difference(pair[0], fb.sweep(paper, **other))
+        fb.difference(pair[0], fb.sweep(paper, measures, fb.Cells(**{"shape": (41, 41), **other})))
 
 
 def test_what_is_no_sweep_is_refused(pair):
@@ -102,16 +105,18 @@ def test_what_is_no_sweep_is_refused(pair):
 
 
 def test_samples_are_compared_sample_by_sample(paper, exact):
-    asked = {"over": "samples", "shape": [50]}
+    asked = {"cells": fb.Cells(over="samples", shape=[50])}
     change = fb.difference(fb.sweep(paper, **asked), fb.sweep(paper, **asked, loop=exact))
     assert (change.status.values == OK).sum() > 10
     with pytest.raises(fb.InputError, match="q2 has 50 values"):
-        fb.difference(fb.sweep(paper, **asked), fb.sweep(paper, **asked, seed=1))
+        fb.difference(fb.sweep(paper, **asked), fb.sweep(paper, cells=replace(asked["cells"], seed=1)))
 
 
 def test_thinning_is_even_and_reads_nothing(paper, tmp_path):
     """A store is thinned before it is read; the ends stand equally far out."""
-    whole = fb.sweep(paper, ["robustness", "turn"], shape=(230, 170), store=tmp_path / "a.zarr")
+    whole = fb.sweep(
+        paper, ["robustness", "turn"], fb.Cells(shape=(230, 170)), execution=fb.Execution(store=tmp_path / "a.zarr")
+    )
     assert list(whole.data_vars) == ["status", "robustness", "turn"]  # the order asked for
     part = thinned(whole, largest=50)
     assert part.sizes["x"] <= 50
@@ -128,7 +133,7 @@ def test_thinning_is_even_and_reads_nothing(paper, tmp_path):
 def test_an_unfinished_store_says_so(paper, tmp_path):
     import zarr
 
-    fb.sweep(paper, shape=(9, 9), store=tmp_path / "a.zarr")
+    fb.sweep(paper, cells=fb.Cells(shape=(9, 9)), execution=fb.Execution(store=tmp_path / "a.zarr"))
     zarr.open_group(tmp_path / "a.zarr", mode="r+")["finished_blocks"][0] = 0
     with pytest.warns(fb.FlexbaseWarning, match="1 of 1 blocks are missing"):
         fb.open_dataset(tmp_path / "a.zarr")

@@ -8,7 +8,7 @@ import pytest
 import flexbase as fb
 from flexbase.sweeps.cells.axis import block_shape, boxes, extent
 from flexbase.sweeps.cells.domain import HALTON, RANDOM, Samples
-from flexbase.sweeps.cells.grids import joint_place, tip_place
+from flexbase.sweeps.cells.grids import place_of
 
 
 @pytest.mark.parametrize("shape", [(7,), (5, 6), (3, 4, 5), (1, 9)])
@@ -22,7 +22,10 @@ def test_blocks_cover_every_cell_once(shape: tuple[int, ...], cells: int) -> Non
 
 
 def test_grid_inputs_are_the_meshgrid(paper: fb.Plant) -> None:
-    place = joint_place(paper, (4, 3), (0.0, 1.0, 2.0, 3.0), (), (), {"payload": (0.0, 2.0, 5)})
+    place = place_of(
+        paper,
+        fb.Cells(over="joints", shape=(4, 3), bounds=(0.0, 1.0, 2.0, 3.0), vary={"payload": (0.0, 2.0, 5)}),
+    )
     inputs, reached = place.domain.inputs(((1, 4), (0, 3), (1, 3)))
     assert reached is None
     payload, second, first = np.meshgrid(
@@ -48,7 +51,10 @@ def test_samples_do_not_depend_on_blocks(sampling: str) -> None:
 def test_tip_cells_of_a_spatial_arm_reach_their_targets() -> None:
     """Joints of every reached cell bring the tip where the cell says, to 1e-9 m."""
     plant = fb.load("ur5e-pedestal")
-    place = tip_place(plant, (5, 4), (0.3, 0.5, -0.2, 0.2), (), (1.2,), None, {"payload": (0.0, 1.0, 2)})
+    place = place_of(
+        plant,
+        fb.Cells(shape=(5, 4), bounds=(0.3, 0.5, -0.2, 0.2), hold=(1.2,), vary={"payload": (0.0, 1.0, 2)}),
+    )
     inputs, reached = place.domain.inputs(((0, 2), (0, 4), (0, 5)))
     assert reached is not None
     assert reached.reshape(2, -1).sum(axis=1).min() >= 16
@@ -75,23 +81,33 @@ def test_tip_cells_of_a_spatial_arm_reach_their_targets() -> None:
         ({"over": "samples", "sampling": "dice"}, 'sampling: "dice"'),
         ({"engine": "steam"}, 'engine: "steam"'),
         ({"shape": (10_000, 10_000)}, "kept in memory"),
+        ({"shape": 7}, "shape: 7 is not"),
+        ({"shape": (3.5, 3)}, "shape"),
+        ({"vary": {"payload": (0.0, 1.0)}}, "vary"),
+        ({"branch": "up"}, "branch"),
+        ({"over": "joints", "branch": "-"}, "joints are given here, so there is no side"),
+        ({"seed": -1}, "seed: -1 is below 0"),
         ({"resume": True}, "nothing to resume"),
+        ({"workers": 0}, "workers: 0"),
+        ({"workers": 1.5}, "workers: 1.5"),
         ({"measures": ["robustnes"]}, "robustness"),
     ],
 )
 def test_wrong_questions_are_refused(paper: fb.Plant, options: dict, message: str) -> None:
+    measures = options.pop("measures", ["robustness"])
+    execution = fb.Execution(**{name: options.pop(name) for name in ("engine", "resume", "workers") if name in options})
     with pytest.raises(fb.InputError, match=message):
-        fb.sweep(paper, **options)
+        fb.sweep(paper, measures, fb.Cells(**options), execution=execution)
 
 
 def test_one_axis_three_axes_and_samples(paper: fb.Plant) -> None:
-    line = fb.sweep(paper, over="joints", axes=("q3",), shape=(50,), hold=(0.2, 0.0))
+    line = fb.sweep(paper, cells=fb.Cells(over="joints", axes=("q3",), shape=(50,), hold=(0.2, 0.0)))
     assert line["robustness"].dims == ("q3", "mode")
-    cube = fb.sweep(paper, shape=(6, 5), vary={"stiffness": (0.5, 2.0, 4)})
+    cube = fb.sweep(paper, cells=fb.Cells(shape=(6, 5), vary={"stiffness": (0.5, 2.0, 4)}))
     assert dict(cube.sizes) == {"stiffness": 4, "y": 5, "x": 6, "mode": 1}
     rising = cube["robustness"].isel(mode=0, x=4, y=3).values  # w does not depend on the stiffness, omega does
     assert rising == pytest.approx(rising[0], rel=1e-12)
-    drawn = fb.sweep(paper, ["frequency"], over="samples", shape=(40,), vary={"stiffness": (0.5, 2.0, 1)})
+    drawn = fb.sweep(paper, ["frequency"], fb.Cells(over="samples", shape=(40,), vary={"stiffness": (0.5, 2.0, 1)}))
     assert drawn["q2"].dims == ("sample",)
     for i in range(0, 40, 10):
         joints = [float(drawn["q2"][i]), float(drawn["q3"][i])]
@@ -104,9 +120,12 @@ def test_rows_are_used_where_the_compiler_is_missing(paper: fb.Plant, monkeypatc
     """Auto falls back with a word; compiled, asked for by name, is refused with the mend."""
     import sys
 
+    from flexbase.sweeps.engine import evaluate
+
     monkeypatch.setitem(sys.modules, "llvmlite.binding", None)
+    monkeypatch.setattr(evaluate, "_READY", {})  # kernels of this process, made when it was there
     with pytest.warns(fb.FlexbaseWarning, match="fast"):
-        found = fb.sweep(paper, shape=(500, 500))
+        found = fb.sweep(paper, cells=fb.Cells(shape=(500, 500)))
     assert "rows" in found.attrs["flexbase_recipe"]
     with pytest.raises(fb.MissingExtra, match="fast"):
-        fb.sweep(paper, shape=(5, 5), engine="compiled")
+        fb.sweep(paper, cells=fb.Cells(shape=(5, 5)), execution=fb.Execution(engine="compiled"))

@@ -15,16 +15,16 @@ from flexbase.model.base import make_base
 from flexbase.model.files.project import bundled
 from flexbase.model.mechanism import Body, with_payload
 from flexbase.sweeps.engine.evaluate import Engine, compiled
-from flexbase.sweeps.engine.question import Question
+from flexbase.sweeps.engine.formula import Formula
 from flexbase.sweeps.engine.status import OK
 
 POSES = 60
 ROUNDING = 1e-12  # times the condition number of M: what the issue of rounding in M alone may cost
 
 
-def question_of(arm: fb.Plant, parameters: tuple[str, ...] = (), E: np.ndarray | None = None) -> Question:
+def question_of(arm: fb.Plant, parameters: tuple[str, ...] = (), E: np.ndarray | None = None) -> Formula:
     known = tuple(one for one in MEASURES.values() if not one.slow and not one.needs(arm.arm.m, arm.arm.n, arm.arm.k))
-    return Question(arm.arm, known, tuple(range(arm.arm.n)), (0.0,) * arm.arm.n, parameters, E)
+    return Formula(arm.arm, known, tuple(range(arm.arm.n)), (0.0,) * arm.arm.n, parameters, E)
 
 
 def poses(plant: fb.Plant, seed: int = 0) -> np.ndarray:
@@ -116,7 +116,7 @@ def test_slow_measures_are_the_full_loop(paper: fb.Plant) -> None:
     """Rightmost pole of the reduced loop against the full 2N state space: equal where the task holds the whole arm."""
     joints = poses(paper, 4)[:, :25]
     slow = tuple(MEASURES[name] for name in ("closed_loop_abscissa", "highest_gain"))
-    found = Engine(Question(paper.arm, slow, (0, 1), (0.0, 0.0))).run(joints)
+    found = Engine(Formula(paper.arm, slow, (0, 1), (0.0, 0.0))).run(joints)
     gains = paper.arm.gains
     assert gains is not None
     for cell in np.flatnonzero(found.status == OK):

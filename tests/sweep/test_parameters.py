@@ -11,7 +11,7 @@ import flexbase as fb
 from flexbase.model.base import make_base
 from flexbase.sweeps.cells.parameters import configuration_of, parameters_of
 from flexbase.sweeps.engine.evaluate import Engine, compiled
-from flexbase.sweeps.engine.question import Question
+from flexbase.sweeps.engine.formula import Formula
 from flexbase.trace.algebra import stack
 from systems.changed import changed
 
@@ -71,11 +71,11 @@ def test_all_parameters_compile_and_vary_a_sweep() -> None:
     plant = fb.load("ueda2003")
     names = tuple(parameters_of(plant.arm))
     assert names[5:] == ("stiffness.q1", "damping.q1", "link_mass.q2", "link_mass.q3", "link_com.q2", "link_com.q3")
-    question = Question(plant.arm, (fb.MEASURES["frequency"],), (0, 1), (0.0, 0.0), names)
+    question = Formula(plant.arm, (fb.MEASURES["frequency"],), (0, 1), (0.0, 0.0), names)
     inputs = np.random.default_rng(0).uniform(0.5, 1.5, (2 + len(names), 50))
     rows, kernel = Engine(question).run(inputs), compiled(question).run(inputs)
     assert kernel.values["frequency"] == pytest.approx(rows.values["frequency"], rel=1e-12)
-    chart = fb.sweep(plant, ["frequency"], shape=(5, 5), vary={"stiffness.q1": (1.0, 4.0, 2)})
+    chart = fb.sweep(plant, ["frequency"], fb.Cells(shape=(5, 5), vary={"stiffness.q1": (1.0, 4.0, 2)}))
     soft, stiff = chart.frequency.values
     known = np.isfinite(soft)
     assert known.any()
@@ -84,6 +84,6 @@ def test_all_parameters_compile_and_vary_a_sweep() -> None:
 
 def test_an_unknown_parameter_is_named(paper: fb.Plant) -> None:
     with pytest.raises(fb.InputError, match=r'no parameter "stiffness\.q2".*stiffness\.q1'):
-        fb.sweep(paper, shape=(3, 3), vary={"stiffness.q2": (0.5, 1.5, 3)})
+        fb.sweep(paper, cells=fb.Cells(shape=(3, 3), vary={"stiffness.q2": (0.5, 1.5, 3)}))
     with pytest.raises(fb.InputError, match=r"stiffness\.q1 from 0 to 1"):
-        fb.sweep(paper, shape=(3, 3), vary={"stiffness.q1": (0.0, 1.0, 3)})
+        fb.sweep(paper, cells=fb.Cells(shape=(3, 3), vary={"stiffness.q1": (0.0, 1.0, 3)}))

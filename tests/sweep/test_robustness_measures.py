@@ -15,15 +15,15 @@ from flexbase.model.base import make_base
 from flexbase.model.loop import Gain
 from flexbase.model.parts import base_first
 from flexbase.sweeps.engine.evaluate import compiled
-from flexbase.sweeps.engine.question import Question
+from flexbase.sweeps.engine.formula import Formula
 from flexbase.sweeps.engine.status import INFEASIBLE, OK
 from systems.changed import changed
 
 
-def asked(plant: fb.Plant, names: tuple[str, ...], **more: object) -> Question:
+def asked(plant: fb.Plant, names: tuple[str, ...], **more: object) -> Formula:
     measures = tuple(MEASURES[name] for name in names)
     n = plant.arm.n
-    return Question(plant.arm, measures, tuple(range(n)), (0.0,) * n, **more)  # type: ignore[arg-type]
+    return Formula(plant.arm, measures, tuple(range(n)), (0.0,) * n, **more)  # type: ignore[arg-type]
 
 
 def undamped(plant: fb.Plant) -> fb.Plant:

@@ -38,12 +38,12 @@ def finished(store: Path) -> int:
 def whole(paper: fb.Plant, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """An undisturbed run."""
     path = tmp_path_factory.mktemp("whole") / "map.zarr"
-    fb.sweep(paper, shape=SHAPE, store=path)
+    fb.sweep(paper, cells=fb.Cells(shape=SHAPE), execution=fb.Execution(store=path))
     return path
 
 
 def test_store_is_the_answer_in_memory(paper: fb.Plant, whole: Path) -> None:
-    kept, held = fb.open_dataset(whole), fb.sweep(paper, shape=SHAPE)
+    kept, held = fb.open_dataset(whole), fb.sweep(paper, cells=fb.Cells(shape=SHAPE))
     assert np.array_equal(kept["status"].values, held["status"].values)
     assert np.array_equal(kept["robustness"].values, held["robustness"].values, equal_nan=True)
     assert kept["robustness"].attrs == held["robustness"].attrs
@@ -66,7 +66,7 @@ def interrupted(paper: fb.Plant, path: Path, after: int, monkeypatch: pytest.Mon
     with monkeypatch.context() as patch:
         patch.setattr(Job, "run", limited)
         with pytest.raises(KeyboardInterrupt):
-            fb.sweep(paper, shape=SHAPE, store=path)
+            fb.sweep(paper, cells=fb.Cells(shape=SHAPE), execution=fb.Execution(store=path))
 
 
 @pytest.mark.parametrize("after", [0, 1, 3])
@@ -77,7 +77,12 @@ def test_interrupted_and_resumed(
     interrupted(paper, path, after, monkeypatch)
     assert finished(path) == after < finished(whole)
     seen: list[int] = []
-    fb.sweep(paper, shape=SHAPE, store=path, resume=True, progress=lambda done, total: seen.append(done))
+    fb.sweep(
+        paper,
+        progress=lambda what, done, total: seen.append(done),
+        cells=fb.Cells(shape=SHAPE),
+        execution=fb.Execution(store=path, resume=True),
+    )
     assert files(path) == files(whole)
     assert len(seen) == 1 + finished(whole) - after  # no block is computed twice
 
@@ -116,7 +121,7 @@ def test_half_created_stores_are_started(paper: fb.Plant, whole: Path, tmp_path:
         (path / "zarr.json").write_text('{"zarr_form')
     if half == "arrays without recipe":
         shutil.copytree(whole / "status", path / "status", ignore=shutil.ignore_patterns("c"))
-    fb.sweep(paper, shape=SHAPE, store=path, resume=True)
+    fb.sweep(paper, cells=fb.Cells(shape=SHAPE), execution=fb.Execution(store=path, resume=True))
     assert files(path) == files(whole)
 
 
@@ -132,7 +137,12 @@ def test_half_created_stores_are_started(paper: fb.Plant, whole: Path, tmp_path:
 def test_another_recipe_is_refused(paper: fb.Plant, whole: Path, options: dict, said: str) -> None:
     before = files(whole)
     with pytest.raises(fb.InputError, match=f"another recipe.*{said}"):
-        fb.sweep(paper, shape=SHAPE, store=whole, resume=True, **options)
+        fb.sweep(
+            paper,
+            options.get("measures", ["robustness"]),
+            fb.Cells(shape=SHAPE, **{name: options[name] for name in ("bounds", "branch") if name in options}),
+            execution=fb.Execution(store=whole, resume=True, engine=options.get("engine", "auto")),
+        )
     assert files(whole) == before
 
 
@@ -140,24 +150,24 @@ def test_another_model_is_refused(whole: Path) -> None:
     arm = fb.load("ueda2003").arm
     other = fb.Plant(replace(arm, base=make_base([3.1e4], [10.0], [0.0], 1)))
     with pytest.raises(fb.InputError, match="model"):
-        fb.sweep(other, shape=SHAPE, store=whole, resume=True)
+        fb.sweep(other, cells=fb.Cells(shape=SHAPE), execution=fb.Execution(store=whole, resume=True))
 
 
 def test_what_is_there_is_never_overwritten(paper: fb.Plant, whole: Path, tmp_path: Path) -> None:
     with pytest.raises(fb.InputError, match="already exists"):
-        fb.sweep(paper, shape=SHAPE, store=whole)
+        fb.sweep(paper, cells=fb.Cells(shape=SHAPE), execution=fb.Execution(store=whole))
     foreign = tmp_path / "photos.zarr"
     foreign.mkdir()
     (foreign / "cat.png").write_bytes(b"meow")
     for resume in (False, True):
         with pytest.raises(fb.InputError, match=r"photos\.zarr"):
-            fb.sweep(paper, shape=SHAPE, store=foreign, resume=resume)
+            fb.sweep(paper, cells=fb.Cells(shape=SHAPE), execution=fb.Execution(store=foreign, resume=resume))
     assert (foreign / "cat.png").read_bytes() == b"meow"
 
 
 def test_unwritable_place(paper: fb.Plant, tmp_path: Path) -> None:
     with pytest.raises(fb.InputError, match=r"nowhere.*cannot be written"):
-        fb.sweep(paper, shape=SHAPE, store=tmp_path / "nowhere" / "map.zarr")
+        fb.sweep(paper, cells=fb.Cells(shape=SHAPE), execution=fb.Execution(store=tmp_path / "nowhere" / "map.zarr"))
 
 
 def test_full_disk_keeps_finished_blocks(
@@ -176,7 +186,7 @@ def test_full_disk_keeps_finished_blocks(
     with monkeypatch.context() as patch:
         patch.setattr(_local, "_put", full)
         with pytest.raises(fb.InputError, match=r"the disk is full.*--resume"):
-            fb.sweep(paper, shape=SHAPE, store=path)
+            fb.sweep(paper, cells=fb.Cells(shape=SHAPE), execution=fb.Execution(store=path))
     assert 1 <= finished(path) <= 2
-    fb.sweep(paper, shape=SHAPE, store=path, resume=True)
+    fb.sweep(paper, cells=fb.Cells(shape=SHAPE), execution=fb.Execution(store=path, resume=True))
     assert files(path) == files(whole)

@@ -32,7 +32,7 @@ from flexbase.report.save import check_picture_path, save_figure
 from flexbase.report.style import styled
 from flexbase.simulation import Run, SampledRun
 from flexbase.study.layout.layout import Layout
-from flexbase.study.montecarlo import Probability, is_study
+from flexbase.study.montecarlo import MonteCarlo, is_study
 from flexbase.study.postures.posture import Postures
 from flexbase.study.robust_configurations.curves import RobustCurves
 from flexbase.study.robust_configurations.points import RobustPoints
@@ -51,7 +51,7 @@ def plot(result: object) -> Figure:
     Raises InputError for anything else.
     """
     if _is_dataset(result):
-        return plot(Probability(result)) if is_study(result) else styled()(draw_dataset)(result)
+        return plot(MonteCarlo(result)) if is_study(result) else styled()(draw_dataset)(result)
     drawable = ", ".join(kind.__name__ for kind in plot.registry if kind is not object)
     raise InputError(f"plot: a {type(result).__name__} cannot be drawn. Give one of {drawable}.")
 
@@ -67,7 +67,7 @@ plot.register(Postures)(styled()(draw_postures))
 plot.register(RobustCurves)(styled()(draw_robust_curves))
 plot.register(RobustPoints)(styled()(draw_robust_points))
 plot.register(Layout)(styled()(draw_layout))
-plot.register(Probability)(styled()(draw_probability))
+plot.register(MonteCarlo)(styled()(draw_probability))
 plot.register(Region)(styled()(draw_validity))
 
 

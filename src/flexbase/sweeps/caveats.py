@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 
 import numpy as np
 
-from flexbase.errors import FlexbaseWarning, InputError
+from flexbase.cautions import caution
+from flexbase.errors import InputError
 from flexbase.measures import Measure
 from flexbase.model.base import Base
 from flexbase.plant import Plant
@@ -20,15 +20,9 @@ def check_measures(plant: Plant, chosen: Sequence[Measure], asker: str) -> None:
     """
     arm = plant.arm
     if arm.has_gravity:
-        warnings.warn(
-            f"{asker}: {plant.name} has gravity; its sag and stiffness are left out.", FlexbaseWarning, stacklevel=3
-        )
+        caution(f"{asker}: {plant.name} has gravity; its sag and stiffness are left out.")
     if any(one.reads_modes for one in chosen) and not proportional(arm.base):
-        warnings.warn(
-            f"{asker}: the damping of {plant.name} couples the modes; values are those of the undamped base.",
-            FlexbaseWarning,
-            stacklevel=3,
-        )
+        caution(f"{asker}: the damping of {plant.name} couples the modes; values are those of the undamped base.")
     for one in chosen:
         if missing := one.needs(arm.m, arm.n, arm.k):
             raise InputError(

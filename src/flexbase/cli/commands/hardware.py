@@ -69,7 +69,7 @@ def hardware(
             content["safe_gain"] = [one.to_dict() for one in scales]
             said += ["", sheet_of_gains(scales)]
         if region_:
-            drawn = region(at, method[0], meant, half_width, lambda done, total: progress("cells", done, total))
+            drawn = region(at, method[0], meant, half_width=half_width, progress=progress)
             content["region"] = drawn.to_dict()
             said += ["", drawn.summary()]
     write_out(out, "hardware", drawn, content)

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
 from cyclopts import App, Parameter
 
-from flexbase.cli.options.common import CompensatorFile, Json, option
+from flexbase.cli.options.common import CompensatorFile, Json
 from flexbase.cli.options.gains import GainOptions
-from flexbase.cli.options.pose import Elbow, Robot, compensator_of
+from flexbase.cli.options.plane import TipCells, VerdictExecution
+from flexbase.cli.options.pose import Robot, compensator_of
 from flexbase.cli.options.sensing import SensingOptions
 from flexbase.cli.options.tips import tips_of
-from flexbase.cli.options.words import Vector, counts, numbers
 from flexbase.cli.terminal.cells_bar import cells_bar
-from flexbase.cli.terminal.chart import check_map_out, tables, write_map
+from flexbase.cli.terminal.chart import check_map_out, store_of, tables, write_map
 from flexbase.cli.terminal.document import document
 from flexbase.cli.terminal.out import OutFile, written
 from flexbase.cli.terminal.path_table import HEADS, path_row
@@ -41,30 +42,28 @@ def map_verdicts(
     *,
     method: Annotated[str, Parameter(metavar="NAME", help="designed anew in every cell; none if left out")] = "none",
     compensator: CompensatorFile = None,
-    shape: Annotated[tuple[int, ...], option(counts, "N,N", "cells along each axis; 50,50 if left out")] = (50, 50),
-    bounds: Annotated[Vector | None, option(numbers, "LO,HI,LO,HI", "of the two rows [m, rad]")] = None,
-    hold: Annotated[Vector, option(numbers, "NUMBERS", "the other task rows")] = (),
-    elbow: Elbow = None,
+    cells: TipCells = TipCells(),  # noqa: B008
     path: Annotated[Path | None, Parameter(metavar="FILE", help="instead: tips, one a line (.csv)")] = None,
     loop: GainOptions = GainOptions(),  # noqa: B008
     run: SensingOptions = SensingOptions(),  # noqa: B008
-    resume: Annotated[bool, Parameter(help="go on with an interrupted .zarr", negative=())] = False,
+    execution: VerdictExecution = VerdictExecution(),  # noqa: B008
     out: Out = None,
     json: Json = False,
 ) -> None:
     """Stability, margins, changed robots and stiffness, each cell with a controller of its own."""
-    check_map_out(out, resume)
+    check_map_out(out, execution.resume)
     plant = load(robot)
     meant = Loop(compensator_of(plant, compensator), loop.gains(plant), run.sensing(plant))
-    given: dict[str, Any] = {"loop": meant, "branch": elbow}
+    with cells_bar(store_of(out)) as progress:
+        if path is None:
+            how = replace(execution, store=store_of(out))
+            found = hardware_map(plant, method, cells, loop=meant, execution=how, progress=progress)
+        else:
+            given: dict[str, Any] = {"branch": cells.branch, "workers": execution.workers, "progress": progress}
+            rows = hardware_path(plant, tips_of(path), method, loop=meant, **given)
     if path is not None:
-        rows = hardware_path(plant, tips_of(path), method, **given)
         shown = table(HEADS, [path_row(row) for row in rows], words=(0, 1))
         put(document("hardware-path", {"tips": rows})) if json else put(title(plant.name, method), shown)
         return
-    store = out if out and out.suffix.lower() == ".zarr" else None
-    with cells_bar(store) as progress:
-        grid: dict[str, Any] = {"bounds": bounds, "hold": hold, "store": store, "resume": resume, "progress": progress}
-        found = hardware_map(plant, method, shape, **given, **grid)
     write_map(out, found)
     put(document("hardware-map", plain(found))) if json else put(*tables(found), *written(out))

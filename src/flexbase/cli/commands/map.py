@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated
 
 from cyclopts import App, Parameter
 
 from flexbase.cli.options.common import CompensatorFile, Json, option
-from flexbase.cli.options.execution import ExecutionOptions
-from flexbase.cli.options.plane import PlaneOptions
+from flexbase.cli.options.plane import CellOptions, ExecutionOptions
 from flexbase.cli.options.pose import Robot, compensator_of
 from flexbase.cli.options.words import Names, names
-from flexbase.cli.terminal.chart import check_map_out, tables, write_map
+from flexbase.cli.terminal.chart import check_map_out, store_of, tables, write_map
 from flexbase.cli.terminal.document import document
 from flexbase.cli.terminal.out import OutFile, written
 from flexbase.cli.terminal.show import put
@@ -42,7 +42,7 @@ def map_cells(
     measures: Annotated[
         Names, option(names, "NAMES", "with commas; robustness if left out", ("--measures", "--measure"))
     ] = ("robustness",),
-    plane: PlaneOptions = PlaneOptions(),  # noqa: B008
+    cells: CellOptions = CellOptions(),  # noqa: B008
     execution: ExecutionOptions = ExecutionOptions(),  # noqa: B008
     compensator: CompensatorFile = None,
     difference: Annotated[bool, Parameter(help="what the compensator changes: with it minus without")] = False,
@@ -52,13 +52,10 @@ def map_cells(
     """Measures in every cell, the base at its equilibrium; cells out of reach or singular have none."""
     check_map_out(out, execution.resume)
     check_difference(difference, compensator, out)
-    plane.check()
     plant = load(robot)
     used = compensator_of(plant, compensator)
-    store = out if out and out.suffix.lower() == ".zarr" else None
-    if difference:
-        found = compared(plant, measures, plane, execution, used)
-    else:
-        found = swept(plant, measures, plane, execution, used, store)
+    how = replace(execution, store=store_of(out))
+    ask = compared if difference else swept
+    found = ask(plant, measures, cells, how, used)
     write_map(out, found)
     put(document("map", numbers(found))) if json else put(*tables(found), *written(out))

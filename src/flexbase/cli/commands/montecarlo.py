@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated
 
 from cyclopts import App, Parameter
 
-from flexbase.cli.options.assignments import Assignments, assignments
 from flexbase.cli.options.common import CompensatorFile, Json, option
-from flexbase.cli.options.plane import CellOptions
+from flexbase.cli.options.plane import DrawOptions, StudyCells, StudyExecution
 from flexbase.cli.options.pose import PoseOptions, Robot, compensator_of
-from flexbase.cli.options.words import Names, names, whole
+from flexbase.cli.options.words import Names, names
 from flexbase.cli.terminal.document import document
 from flexbase.cli.terminal.out import OutFile, check_out, written
 from flexbase.cli.terminal.probability import KINDS, tables, write_probability
@@ -39,19 +39,14 @@ def probability(
     /,
     *,
     pose: PoseOptions = PoseOptions(),  # noqa: B008
-    cells: CellOptions = CellOptions(),  # noqa: B008
-    vary: Annotated[
-        Assignments, option(assignments, "NAME=KIND(A,B)", "what varies, and how; with commas; also NAME=KIND:A:B")
-    ] = (),
+    cells: StudyCells = StudyCells(),  # noqa: B008
+    draws: DrawOptions = DrawOptions(),  # noqa: B008
     criterion: Annotated[
         Names, option(names, "NAMES", "with commas, all must hold; definite,robust", ("--criterion", "--criteria"))
     ] = ("definite", "robust"),
-    samples: Annotated[int, option(whole, "N", "draws of the parameters; 1000 if left out")] = 1000,
-    seed: Annotated[int, option(whole, "N", "another seed, other draws")] = 0,
-    sampling: Annotated[str, Parameter(metavar="NAME", help="random (if left out) or sobol")] = "random",
     compensator: CompensatorFile = None,
     redesign: Annotated[bool, Parameter(help="instead: the exact design for the plant as it is, of each pose")] = False,
-    engine: Annotated[str, Parameter(metavar="NAME", help="compiled, rows, or auto (if left out)")] = "auto",
+    execution: StudyExecution = StudyExecution(),  # noqa: B008
     out: Out = None,
     json: Json = False,
 ) -> None:
@@ -63,17 +58,13 @@ def probability(
     with progress_bar() as report:
         found = montecarlo(
             where,
-            dict(vary),
+            draws,
             loop=used,
             redesign=redesign,
             criteria=criterion,
-            samples=samples,
-            seed=seed,
-            sampling=sampling,
-            branch=None if isinstance(where, Pose) else pose.elbow,
-            engine=engine,
-            progress=lambda done, total: report("evaluations", done, total),
-            **vars(cells),
+            cells=cells if isinstance(where, Pose) else replace(cells, branch=pose.elbow),
+            execution=execution,
+            progress=report,
         )
     write_probability(out, found)
     put(document("montecarlo", found.to_dict())) if json else put(*tables(found, where), *written(out))

@@ -50,6 +50,6 @@ def study_hardware(
             seed=seed,
             methods=methods or None,
             workers=workers,
-            progress=lambda done, total: report("poses times methods", done, total),
+            progress=report,
         )
     show("study hardware", found, json, out)

@@ -24,7 +24,7 @@ from cyclopts import Group, Parameter
 
 from flexbase.checks import choose
 from flexbase.cli.options.common import option
-from flexbase.cli.options.words import Ranges, Vector, counts, names, number, number_or_numbers, numbers, ranges, whole
+from flexbase.cli.options.words import Range, Vector, counts, names, number, number_or_numbers, numbers, ranges, whole
 from flexbase.requests import Option, options_of
 
 Request = TypeVar("Request")
@@ -37,7 +37,7 @@ READERS: dict[Any, tuple[Reader, str]] = {  # of a kind of field, and how its va
     float | Vector: (number_or_numbers, "X,Y"),
     tuple[int, ...]: (counts, "N,N"),
     tuple[str, ...]: (names, "A,B"),
-    Ranges: (ranges, "NAME=LO:HI:N"),
+    Mapping[str, Range]: (lambda text, name: dict(ranges(text, name)), "NAME=LO:HI:N"),
 }
 
 

@@ -1,52 +1,49 @@
-"""Where a map looks: which axes, how far, how fine, and what else varies."""
+"""Where a map looks, which axes, how far, how fine, and what else varies; and how its cells are worked through."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Annotated
+from cyclopts import Group
 
-from cyclopts import Group, Parameter
+from flexbase.cli.options.assignments import assignments
+from flexbase.cli.options.from_request import from_request
+from flexbase.cli.options.words import sign
+from flexbase.study.montecarlo import Draws
+from flexbase.sweeps import Cells, Execution
 
-from flexbase.cli.options.common import option
-from flexbase.cli.options.pose import Elbow
-from flexbase.cli.options.words import Names, Ranges, Vector, counts, names, numbers, ranges
-from flexbase.errors import InputError
-
-PLANE = Group("Cells", sort_key=10)
-
-
-@Parameter(name="*", group=PLANE)
-@dataclass(frozen=True)
-class CellOptions:
-    """Axes and what stays put."""
-
-    over: Annotated[str, Parameter(metavar="NAME", help="tip (if left out) or joints; map: also samples of joints")] = (
-        "tip"
-    )
-    shape: Annotated[
-        tuple[int, ...] | None, option(counts, "N,N", "cells along each axis; map 400,400, montecarlo 100,100")
-    ] = None
-    bounds: Annotated[
-        Vector | None, option(numbers, "LO,HI,LO,HI", "of the axes in turn; all that is reached [m, rad]")
-    ] = None
-    axes: Annotated[Names, option(names, "Q,Q", "which task rows or joints vary; two if left out")] = ()
-    hold: Annotated[Vector, option(numbers, "NUMBERS", "over tip: the other rows; else: all arm joints")] = ()
+CELLS, EXECUTION = Group("Cells", sort_key=10), Group("Execution", sort_key=11)
+BRANCH = {"branch": ("--elbow", "--branch")}
 
 
-@Parameter(name="*", group=PLANE)
-@dataclass(frozen=True)
-class PlaneOptions(CellOptions):
-    """And what else varies."""
+@from_request(CELLS, names=BRANCH, readers={"branch": sign})
+class CellOptions(Cells):
+    """Of a sweep."""
 
-    elbow: Elbow = None
-    vary: Annotated[
-        Ranges,
-        option(ranges, "NAME=LO:HI:N", "more axes: stiffness, damping, payload, link_mass, link_com, stiffness.JOINT"),
-    ] = ()
-    sampling: Annotated[str, Parameter(metavar="NAME", help="samples: random (if left out) or halton")] = "random"
-    seed: Annotated[int, Parameter(metavar="N", help="samples: another seed, other samples")] = 0
 
-    def check(self) -> None:
-        """Raise InputError where an option belongs to another kind of map."""
-        if self.over != "tip" and self.elbow is not None:
-            raise InputError("--elbow: joints are given here, so there is no side to choose. Leave it out.")
+@from_request(CELLS, without=("branch", "vary", "sampling", "seed"))
+class StudyCells(Cells):
+    """Of a Monte Carlo study, whose pose has a branch already."""
+
+
+@from_request(CELLS, names=BRANCH, readers={"branch": sign}, without=("over", "vary", "sampling", "seed"))
+class TipCells(Cells):
+    """Of a map over tips."""
+
+
+@from_request(EXECUTION, without=("store",))
+class ExecutionOptions(Execution):
+    """Of a sweep; `--out` says where it is kept."""
+
+
+@from_request(EXECUTION, without=("store", "resume"))
+class StudyExecution(Execution):
+    """Of a study in memory."""
+
+
+@from_request(EXECUTION, without=("store", "engine"))
+class VerdictExecution(Execution):
+    """Of a map of verdicts."""
+
+
+@from_request(CELLS, readers={"vary": lambda text, name: dict(assignments(text, name))})
+class DrawOptions(Draws):
+    """Of a Monte Carlo study."""

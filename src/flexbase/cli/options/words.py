@@ -9,7 +9,7 @@ from flexbase.model.task import BRANCHES
 
 Vector = tuple[float, ...]
 Names = tuple[str, ...]
-Ranges = tuple[tuple[str, tuple[float, float, int]], ...]
+Range = tuple[float, float, int]
 
 
 def number(text: str, option: str) -> float:
@@ -51,7 +51,7 @@ def names(text: str, option: str) -> Names:
     return tuple(part.strip() for part in _parts(text, option))
 
 
-def ranges(text: str, option: str) -> Ranges:
+def ranges(text: str, option: str) -> tuple[tuple[str, Range], ...]:
     """Names with a range each, such as stiffness=0.7:1.3:5; the count may be left out. Raises InputError."""
     found = []
     for part in _parts(text, option):

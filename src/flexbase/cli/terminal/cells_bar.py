@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -19,6 +19,8 @@ from rich.progress import (
 )
 from rich.text import Text
 
+from flexbase.requests import Progress as Report
+
 
 class _Rate(ProgressColumn):
     """Cells a second."""
@@ -29,8 +31,8 @@ class _Rate(ProgressColumn):
 
 
 @contextmanager
-def cells_bar(store: Path | None) -> Iterator[Callable[[int, int], None]]:
-    """A bar with rate and time left for (done, total); an interruption says what is kept and how to go on."""
+def cells_bar(store: Path | str | None) -> Iterator[Report]:
+    """A bar with rate and time left for (what, done, total); an interruption says what is kept and how to go on."""
     state = [0, 0]
     columns = (TextColumn("cells"), BarColumn(), TaskProgressColumn(), _Rate(), TimeRemainingColumn())
     with Progress(
@@ -42,7 +44,7 @@ def cells_bar(store: Path | None) -> Iterator[Callable[[int, int], None]]:
     ) as bar:
         task = bar.add_task("", total=None)
 
-        def move(done: int, total: int) -> None:
+        def move(_: str, done: int, total: int) -> None:
             state[:] = done, total
             bar.update(task, completed=done, total=total)
 

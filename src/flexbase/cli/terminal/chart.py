@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from rich.console import RenderableType
 
@@ -17,10 +17,13 @@ from flexbase.sweeps import save_csv, save_netcdf
 from flexbase.sweeps.answers.summary import counts, extents, measures_of
 from flexbase.sweeps.engine.status import statuses_of
 
+if TYPE_CHECKING:
+    import xarray
+
 KINDS = (*PICTURES, ".html", ".csv", ".json", ".nc", ".zarr")
 
 
-def tables(found: Any) -> list[RenderableType]:
+def tables(found: xarray.Dataset) -> list[RenderableType]:
     """Heading, axes and cells, and the smallest and largest value of each measure."""
     rows = []
     for one in extents(found):
@@ -40,14 +43,14 @@ def tables(found: Any) -> list[RenderableType]:
     return [title(found.attrs["robot"], heading), "", said, table(columns, rows, words=(0, 4), blank_after=False)]
 
 
-def _extent(axis: Any) -> str:
+def _extent(axis: xarray.DataArray) -> str:
     unit = "" if axis.attrs["units"] == "1" else f" {axis.attrs['units']}"
     return f"{number(float(axis[0]), 6)} to {number(float(axis[-1]), 6)}{unit}, {axis.size} cells"
 
 
 def check_map_out(out: Path | None, resume: bool) -> None:
     """Raise InputError where the file cannot be written, before any work; a store may be there already."""
-    if out is not None and out.suffix.lower() == ".zarr":
+    if out is not None and store_of(out):
         if out.exists() and not out.is_dir():
             raise InputError(f"--out: {out} is a file, a store is a folder. Give another name.")
         if not out.parent.is_dir():
@@ -58,7 +61,12 @@ def check_map_out(out: Path | None, resume: bool) -> None:
         raise InputError("--resume: only a store can be resumed. Give --out NAME.zarr.")
 
 
-def write_map(out: Path | None, found: Any) -> None:
+def store_of(out: Path | None) -> Path | None:
+    """Where blocks are kept as they finish."""
+    return out if out is not None and out.suffix.lower() == ".zarr" else None
+
+
+def write_map(out: Path | None, found: xarray.Dataset) -> None:
     """Write a map as its suffix says; a store is written already. Raises InputError."""
     suffix = "" if out is None else out.suffix.lower()
     if suffix == ".csv":

@@ -10,14 +10,14 @@ from rich.console import RenderableType
 from flexbase.cli.terminal.out import PICTURES, write_out
 from flexbase.cli.terminal.show import facts, table, title
 from flexbase.plant import Plant, Pose
-from flexbase.study.montecarlo import LEVELS, Estimate, Probability
+from flexbase.study.montecarlo import LEVELS, Estimate, MonteCarlo
 from flexbase.sweeps.engine.status import STATUS
 
 KINDS = (*PICTURES, ".csv", ".json", ".nc")
 COVERS = "  Intervals (95 %) cover the finite number of draws, not wrong distributions."
 
 
-def tables(found: Probability, place: Plant | Pose) -> list[RenderableType]:
+def tables(found: MonteCarlo, place: Plant | Pose) -> list[RenderableType]:
     """Heading, what was asked, and probabilities with their intervals."""
     said = found.dataset.attrs
     asked = [
@@ -44,7 +44,7 @@ def _row(name: str, one: Estimate) -> list[str]:
     return [name, *(f"{value:.4f}" if np.isfinite(value) else "none" for value in one)]
 
 
-def write_probability(out: Path | None, found: Probability) -> None:
+def write_probability(out: Path | None, found: MonteCarlo) -> None:
     """Write a study as its suffix says. Raises InputError."""
     if out is not None and out.suffix.lower() == ".nc":
         found.save_netcdf(out)

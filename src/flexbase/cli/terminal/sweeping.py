@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
-from flexbase.cli.options.execution import ExecutionOptions
-from flexbase.cli.options.plane import PlaneOptions
 from flexbase.cli.options.words import Names
 from flexbase.cli.terminal.cells_bar import cells_bar
-from flexbase.control.compensator import Compensator
 from flexbase.errors import InputError
+from flexbase.model.loop import HasGain
 from flexbase.plant import Plant
-from flexbase.sweeps import difference, sweep
+from flexbase.sweeps import Cells, Execution, difference, sweep
+
+if TYPE_CHECKING:
+    import xarray
 
 
 def check_difference(wanted: bool, compensator: Path | None, out: Path | None) -> None:
@@ -26,37 +27,12 @@ def check_difference(wanted: bool, compensator: Path | None, out: Path | None) -
         )
 
 
-def swept(
-    plant: Plant,
-    measures: Names,
-    plane: PlaneOptions,
-    execution: ExecutionOptions,
-    used: Compensator | None,
-    store: Path | None,
-) -> Any:
-    """The sweep, an `xarray.Dataset`."""
-    with cells_bar(store) as progress:
-        return sweep(
-            plant,
-            measures,
-            plane.over,
-            plane.shape,
-            bounds=plane.bounds,
-            branch=plane.elbow,
-            axes=plane.axes,
-            hold=plane.hold,
-            vary=dict(plane.vary),
-            loop=used,
-            sampling=plane.sampling,
-            seed=plane.seed,
-            store=store,
-            progress=progress,
-            **vars(execution),
-        )
+def swept(plant: Plant, measures: Names, cells: Cells, execution: Execution, used: HasGain | None) -> xarray.Dataset:
+    """The sweep."""
+    with cells_bar(execution.store) as progress:
+        return sweep(plant, measures, cells, loop=used, execution=execution, progress=progress)
 
 
-def compared(
-    plant: Plant, measures: Names, plane: PlaneOptions, execution: ExecutionOptions, used: Compensator | None
-) -> Any:
+def compared(plant: Plant, measures: Names, cells: Cells, execution: Execution, used: HasGain | None) -> xarray.Dataset:
     """What the compensator changes: with it minus without."""
-    return difference(*(swept(plant, measures, plane, execution, one, None) for one in (None, used)))
+    return difference(*(swept(plant, measures, cells, execution, one) for one in (None, used)))

@@ -19,7 +19,7 @@ from matplotlib.path import Path
 from flexbase.errors import InputError
 from flexbase.report.maps.signs import PATTERN, level_paths, outlines
 from flexbase.report.style import BLUE, GREY, HATCH, INK, ORANGE, PALE, new_figure
-from flexbase.study.montecarlo import LEVELS, Probability
+from flexbase.study.montecarlo import LEVELS, MonteCarlo
 from flexbase.sweeps.engine.status import OK, STATUS
 
 BANDS = (0.0, 0.05, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99, 1.0)  # of probability, a colour each
@@ -29,7 +29,7 @@ BINS = 24
 COLUMNS = 3
 
 
-def draw_probability(result: Probability) -> Figure:
+def draw_probability(result: MonteCarlo) -> Figure:
     """A picture by the number of axes: none (a pose), one or two. Raises InputError for more."""
     axes = result.dataset["probability"].ndim
     if axes > 2:
@@ -38,7 +38,7 @@ def draw_probability(result: Probability) -> Figure:
     return (_pose, _curve, _map)[axes](result)
 
 
-def _map(result: Probability) -> Figure:
+def _map(result: MonteCarlo) -> Figure:
     found = result.dataset
     rows, columns = found["probability"].dims
     x, y = found[columns].values, found[rows].values
@@ -76,7 +76,7 @@ def _map(result: Probability) -> Figure:
     return figure
 
 
-def _shares(ax: Axes, result: Probability) -> None:
+def _shares(ax: Axes, result: MonteCarlo) -> None:
     """The share of the workspace that holds with at least some probability, as a function of that."""
     levels = np.linspace(0.005, 1.0, 200)
     found = np.array([result.share_at_least(float(level)) for level in levels])
@@ -95,7 +95,7 @@ def _shares(ax: Axes, result: Probability) -> None:
     ax.set_axisbelow(True)
 
 
-def _curve(result: Probability) -> Figure:
+def _curve(result: MonteCarlo) -> Figure:
     found = result.dataset
     (name,) = found["probability"].dims
     x = found[name].values
@@ -111,7 +111,7 @@ def _curve(result: Probability) -> Figure:
     return figure
 
 
-def _pose(result: Probability) -> Figure:
+def _pose(result: MonteCarlo) -> Figure:
     found = result.dataset
     names = [name for name in found.coords if found[name].dims == ("draw",)]
     varied = [name for name in names if np.ptp(found[name].values) > 0.0]
@@ -138,7 +138,7 @@ def _pose(result: Probability) -> Figure:
     return figure
 
 
-def _criteria(ax: Axes, result: Probability) -> None:
+def _criteria(ax: Axes, result: MonteCarlo) -> None:
     """Probability of everything with its interval, and of each criterion by itself."""
     found, whole = result.dataset, result.at_pose
     names = ["all", *found["criterion"].values.tolist()]
@@ -160,7 +160,7 @@ def _criteria(ax: Axes, result: Probability) -> None:
     ax.tick_params(axis="y", length=0)
 
 
-def _heading(figure: Figure, result: Probability) -> None:
+def _heading(figure: Figure, result: MonteCarlo) -> None:
     """What was asked: the design, what varied, and what holding means."""
     said = result.dataset.attrs
     lines = [f"{said['robot']}, {said['design']}: {result.dataset.sizes['draw']} draws, seed {said['seed']}"]

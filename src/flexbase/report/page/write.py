@@ -18,7 +18,7 @@ from flexbase.report.page.planes import Panel, plane_panels, slice_panels
 from flexbase.report.page.traces import SHAPES
 from flexbase.sweeps.answers.chart import Chart, chart_of
 from flexbase.sweeps.answers.summary import measures_of
-from flexbase.sweeps.kept.layout import MODE
+from flexbase.sweeps.engine.question import MODE
 
 LARGEST, LEAST = 600, 100  # cells along an axis
 CELLS = 720_000  # in all panels together: about 5 MB

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import multiprocessing
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, NamedTuple
 
@@ -16,6 +13,7 @@ from flexbase.checks import choose
 from flexbase.errors import InputError, import_extra
 from flexbase.model.loop import loop_on
 from flexbase.plant import Plant, Pose, check_plant
+from flexbase.requests import Progress, no_progress
 from flexbase.sheets.sheet import Column, Sheet, answer, facts, make_sheet, table, words
 from flexbase.sheets.told import Told
 from flexbase.study.agreement import move as agreement_move
@@ -23,15 +21,12 @@ from flexbase.study.agreement import nudge as agreement_nudge
 from flexbase.study.agreement.case import Case, Outcome, draw_case
 from flexbase.study.agreement.nudge import NEAR
 from flexbase.study.workspace import random_poses
-from flexbase.sweeps.engine.pool import check_workers, one_blas_thread
+from flexbase.sweeps.engine.pool import Mapper, mapping
 from flexbase.synthesis import HARDWARE_METHODS
-from flexbase.trace.kernel import cores
 
 FULL = 0.55  # of the poses: a class with so many takes no more, and its poses draw again
 ENOUGH, ERROR = 0.98, 0.02  # of the verdicts that come true, and of either error: good
 ATTEMPTS = 40  # draws a pose
-Progress = Callable[[str, int, int], None]
-Mapper = Callable[[Callable[[Any], Any], Sequence[Any]], Iterator[Any]]
 
 
 class Trial(NamedTuple):
@@ -208,7 +203,7 @@ def agreement_study(
     trial: str = "nudge",
     methods: Sequence[str] | None = None,
     workers: int | None = None,
-    progress: Progress = lambda what, done, total: None,
+    progress: Progress = no_progress,
 ) -> Agreement:
     """Linear verdicts (spectral radius below 1) against outcomes in MuJoCo, one controller at each of `poses` poses.
 
@@ -229,9 +224,8 @@ def agreement_study(
         choose("method", name, HARDWARE_METHODS)
     check_plant(plant)
     _ = loop_on(plant.arm).gains  # raises where there are none
-    check_workers(workers)
     drawn = random_poses(plant, poses, seed)
-    with _mapper(workers or cores()) as each:
+    with mapping(workers) as each:
         cases, redrawn, undesigned = _balanced(drawn, seed, chosen, each, progress)
         cases = [tried.prepared(case, seed) for case in cases]
         outcomes = []
@@ -273,20 +267,6 @@ def _balanced(
         f"agreement: {counts[True]} stable and {counts[False]} unstable loops found of {len(drawn)}; "
         f"{ATTEMPTS} draws a pose do not balance them. Give methods that are stable in some settings and not in others."
     )
-
-
-@contextmanager
-def _mapper(workers: int) -> Iterator[Mapper]:
-    """`map`, over processes: results in order."""
-    if workers == 1:
-        yield map
-        return
-    with one_blas_thread(), ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")) as pool:
-        try:
-            yield pool.map
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
 
 
 def _draw(task: tuple[Pose, int, int, int, tuple[str, ...]]) -> Case | None:

@@ -2,8 +2,9 @@
 
 from flexbase.study.montecarlo.criterion import CRITERIA, Criterion
 from flexbase.study.montecarlo.distribution import DISTRIBUTIONS, Fixed, Lognormal, Normal, Uniform
+from flexbase.study.montecarlo.draws import Draws
 from flexbase.study.montecarlo.interval import Estimate
-from flexbase.study.montecarlo.result import LEVELS, Probability, is_study, shown
+from flexbase.study.montecarlo.result import LEVELS, MonteCarlo, is_study, shown
 from flexbase.study.montecarlo.run import montecarlo
 
 __all__ = [
@@ -11,11 +12,12 @@ __all__ = [
     "DISTRIBUTIONS",
     "LEVELS",
     "Criterion",
+    "Draws",
     "Estimate",
     "Fixed",
     "Lognormal",
     "Normal",
-    "Probability",
+    "MonteCarlo",
     "Uniform",
     "is_study",
     "montecarlo",

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from flexbase.checks import choose
 from flexbase.errors import InputError
 from flexbase.measures import MEASURES
-from flexbase.sweeps.engine.evaluate import Block
+from flexbase.sweeps.engine.question import Block
 from flexbase.sweeps.engine.status import INDEFINITE
 
 TOLERANCE = 0.01  # of `robust`: cos(a, b) = 0.98, an angle of 11.5 degrees between a mode's two directions

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
+from dataclasses import KW_ONLY, dataclass
+from typing import Self
 
 import numpy as np
 
-from flexbase.checks import Array, choose
-from flexbase.errors import InputError
-from flexbase.study.montecarlo.distribution import Distribution
+from flexbase.checks import Array, check_request
+from flexbase.errors import InputError, nearest_name
+from flexbase.requests import asked
+from flexbase.study.montecarlo.distribution import Distribution, read_distribution
 from flexbase.sweeps.cells.parameters import Parameter
 
 RANDOM, SOBOL = "random", "sobol"
@@ -17,23 +20,49 @@ MOST = 10_000_000  # draws
 EDGES = (2.0**-54, 1.0 - 2.0**-53)  # a quantile of 0 or 1 may be infinite
 
 
-def draw(
-    distributions: Mapping[str, Distribution], known: Mapping[str, Parameter], count: int, sampling: str, seed: int
-) -> Array:
-    """Independent parameters, shape (parameters, count).
+@dataclass(frozen=True)
+class Draws:
+    """What varies, and how it is drawn.
 
+    vary : a parameter's name -> its distribution, a text such as `"normal(1,0.15)"` or a number; parameters are
+        independent. Names as for `sweep`, those of a single joint included: `stiffness.q1`
     sampling : "random", by a counter-based generator of its own for each parameter, so that a parameter's draws depend
-        on its name, its distribution and the seed alone; or "sobol", scrambled, more even
-    Raises InputError.
+        on its name, its distribution and the seed alone; or "sobol", scrambled, more even (intervals are then too wide)
     """
-    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MOST:
-        raise InputError(f"samples: {count!r} given. Give a whole number from 1 to {MOST}.")
-    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
-        raise InputError(f"seed: {seed!r} given. Give a whole number from 0 up.")
-    units = choose("sampling", sampling, {RANDOM: _random, SOBOL: _sobol})(list(distributions), count, seed)
-    return np.array(
-        [one.quantiles(np.clip(units[name], *EDGES), known[name].least) for name, one in distributions.items()]
+
+    vary: Mapping[str, object] | None = asked(
+        None, "what varies, and how; with commas; also NAME=KIND:A:B", written="NAME=KIND(A,B)"
     )
+    _: KW_ONLY
+    samples: int = asked(1000, "draws of the parameters")
+    seed: int = asked(0, "another seed, other draws")
+    sampling: str = asked(RANDOM, "how even", choices=(RANDOM, SOBOL))
+
+    def checked(self) -> Self:
+        """The request, if it makes sense; names are the plant's to check. Raises InputError."""
+        check_request("vary", self, Draws)
+        if not 1 <= self.samples <= MOST:
+            raise InputError(f"samples: {self.samples} given. Give a whole number from 1 to {MOST}.")
+        if self.seed < 0:
+            raise InputError(f"seed: {self.seed} is below 0. Give a whole number from 0 up.")
+        return self
+
+    def distributions(self, known: Mapping[str, Parameter]) -> dict[str, Distribution]:
+        """The distribution of each parameter that varies, of those that there are. Raises InputError."""
+        if not self.vary:
+            raise InputError(f"vary: nothing varies. Give a parameter's distribution; there are {', '.join(known)}.")
+        for name in self.vary:
+            if name not in known:
+                raise InputError(f'vary: no parameter "{name}". {nearest_name(name, known)}')
+        return {name: read_distribution(name, given, known[name]) for name, given in self.vary.items()}
+
+    def drawn(self, known: Mapping[str, Parameter]) -> Array:
+        """Independent parameters, shape (parameters, samples). Raises InputError."""
+        distributions = self.distributions(known)
+        units = {RANDOM: _random, SOBOL: _sobol}[self.sampling](list(distributions), self.samples, self.seed)
+        return np.array(
+            [one.quantiles(np.clip(units[name], *EDGES), known[name].least) for name, one in distributions.items()]
+        )
 
 
 def _random(names: list[str], count: int, seed: int) -> dict[str, Array]:

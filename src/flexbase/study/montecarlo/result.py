@@ -2,26 +2,27 @@
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeGuard
 
 import numpy as np
 
-from flexbase.checks import Array
 from flexbase.errors import InputError
+from flexbase.sheets.plain import plain
 from flexbase.study.montecarlo.interval import CONFIDENCE, Estimate, probability_interval
-from flexbase.sweeps.answers.summary import save_netcdf
+from flexbase.sweeps.answers.tables import check_small, dims_of, places_of, save_netcdf, write_columns
 from flexbase.sweeps.engine.status import INFEASIBLE, OK, STATUS
 
+if TYPE_CHECKING:
+    import xarray
+
 LEVELS = (0.5, 0.9, 0.95, 0.99)
-LARGEST = 4_000_000  # lines of a table
 
 
 @dataclass(frozen=True, eq=False)
-class Probability:
+class MonteCarlo:
     """Probability that a design holds, at one pose or in every cell of a map. Made by `montecarlo`.
 
     dataset : an `xarray.Dataset`. Of each cell: `probability` with the bounds `lower` and `upper`, `held` (draws that
@@ -32,7 +33,7 @@ class Probability:
     are wrong, or a model that is.
     """
 
-    dataset: Any
+    dataset: xarray.Dataset
 
     @property
     def is_map(self) -> bool:
@@ -86,7 +87,7 @@ class Probability:
     def to_dict(self) -> dict[str, Any]:
         """Plain numbers; cells without a value hold None. The draws are left out: they are in the dataset."""
         found, attributes = self.dataset, self.dataset.attrs
-        _check_size(found["probability"].size)
+        check_small(found)
         said = {
             "robot": attributes["robot"],
             "design": attributes["design"],
@@ -98,22 +99,20 @@ class Probability:
             "confidence": CONFIDENCE,
             "axes": [
                 {"name": name, "unit": found[name].attrs["units"], "values": found[name].values.tolist()}
-                for name in reversed(found["probability"].dims)
+                for name in reversed(dims_of(found))
             ],
             "status": found["status"].values.tolist(),
             "status_codes": {str(code): STATUS[code] for code in STATUS},
             "nominal": found["nominal"].values.tolist(),
             "held": found["held"].values.tolist(),
         }
-        said |= {name: _with_none(found[name].values) for name in ("probability", "lower", "upper")}
+        said |= {name: plain(found[name].values) for name in ("probability", "lower", "upper")}
         names = found["criterion"].values.tolist()
-        said["by_criterion"] = {
-            name: _with_none(found["criterion_probability"].values[i]) for i, name in enumerate(names)
-        }
+        said["by_criterion"] = {name: plain(found["criterion_probability"].values[i]) for i, name in enumerate(names)}
         if self.is_map:
             said["cells"] = self.cells
-            said["expected_share"] = _plain(self.expected_share)
-            said["share_at_least"] = {f"{level:g}": _plain(self.share_at_least(level)) for level in LEVELS}
+            said["expected_share"] = plain(self.expected_share)
+            said["share_at_least"] = {f"{level:g}": plain(self.share_at_least(level)) for level in LEVELS}
         return said
 
     def summary(self) -> str:
@@ -132,60 +131,24 @@ class Probability:
         """A map: one line a cell. A pose: one line a draw, with its parameters. Raises InputError."""
         found = self.dataset
         if not self.is_map:
-            names = [name for name in found.coords if found[name].dims == ("draw",)]
-            columns = [found[name].values for name in names] + [found["share"].values.astype(int)]
-            return _write(path, [*names, "holds"], columns)
-        dims, shape = found["probability"].dims, found["probability"].shape
-        names, columns = [], []
-        for i, name in reversed(list(enumerate(dims))):
-            values = found[name].values.reshape([-1 if j == i else 1 for j in range(len(dims))])
-            names.append(name)
-            columns.append(np.broadcast_to(values, shape))
-        for name in ("probability", "lower", "upper", "held", "nominal", "status"):
-            names.append(name)
-            columns.append(found[name].values)
-        for i, name in enumerate(found["criterion"].values.tolist()):
-            names.append(f"probability_{name}")
-            columns.append(found["criterion_probability"].values[i])
-        return _write(path, names, columns)
+            drawn = {str(name): found[name].values for name in found.coords if found[name].dims == ("draw",)}
+            return write_columns(path, {**drawn, "holds": found["share"].values.astype(int)})
+        check_small(found)
+        columns = places_of(found)
+        columns |= {name: found[name].values for name in ("probability", "lower", "upper", "held", "nominal", "status")}
+        each = zip(found["criterion"].values.tolist(), found["criterion_probability"].values, strict=True)
+        return write_columns(path, columns | {f"probability_{name}": values for name, values in each})
 
     def save_netcdf(self, path: str | Path) -> None:
         """The dataset as one NetCDF file, whole or not at all. Raises InputError."""
         save_netcdf(self.dataset, path)
 
 
-def is_study(dataset: Any) -> bool:
-    """Whether an `xarray.Dataset` is that of a `Probability`: `Probability(dataset)` then speaks for it again."""
-    return "criterion_probability" in dataset
+def is_study(dataset: object) -> TypeGuard[xarray.Dataset]:
+    """Whether an `xarray.Dataset` is that of a `MonteCarlo`: `MonteCarlo(dataset)` then speaks for it again."""
+    return isinstance(dataset, Mapping) and "criterion_probability" in dataset
 
 
 def shown(estimate: Estimate) -> str:
     """`0.874 (0.852 to 0.894)`."""
     return f"{estimate.value:.4f} ({estimate.lower:.4f} to {estimate.upper:.4f})"
-
-
-def _plain(estimate: Estimate) -> dict[str, float]:
-    return dict(estimate._asdict())
-
-
-def _with_none(values: Array) -> Any:
-    if values.ndim:
-        return [_with_none(part) for part in values]
-    return float(values) if np.isfinite(values) else None
-
-
-def _check_size(lines: int) -> None:
-    if lines > LARGEST:
-        raise InputError(f"{lines} cells: tables hold up to {LARGEST}. Give fewer, with --shape.")
-
-
-def _write(path: str | Path, header: Sequence[str], columns: Iterable[np.ndarray]) -> None:
-    flat = [column.ravel().tolist() for column in columns]
-    _check_size(len(flat[0]))
-    try:
-        with open(path, "w", newline="", encoding="utf-8") as file:
-            table = csv.writer(file)
-            table.writerow(header)
-            table.writerows(zip(*flat, strict=True))
-    except OSError as fault:
-        raise InputError(f"{path}: cannot be written ({fault.strerror}). Give a file in an existing folder.") from fault

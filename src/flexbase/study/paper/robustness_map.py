@@ -17,7 +17,7 @@ from flexbase.measures import MEASURES
 from flexbase.model.loop import Asked, loop_on
 from flexbase.plant import Plant
 from flexbase.sweeps.engine.evaluate import Engine
-from flexbase.sweeps.engine.question import Question
+from flexbase.sweeps.engine.formula import Formula
 from flexbase.trace.algebra import stack, unstack
 
 RINGS, SPOKES = 126, 361
@@ -72,7 +72,7 @@ def robustness_map(plant: Plant, loop: Asked = None, shape: tuple[int, int] = (R
     joints, _ = arm_angles_of_many(arm.mechanism, arm.task, arm.base.equilibrium, targets, arm.task.branch)
     E = loop_on(plant.arm, loop).E
     asked = (MEASURES["robustness"], MEASURES["turn"])
-    block = Engine(Question(arm, asked, (0, 1), (0.0, 0.0), E=E)).run(np.ascontiguousarray(joints.T))
+    block = Engine(Formula(arm, asked, (0, 1), (0.0, 0.0), E=E)).run(np.ascontiguousarray(joints.T))
     frames = forward(arm.mechanism, arm.parts.whole(arm.base.equilibrium.tolist(), unstack(joints, 1)))
     inertia = stack(mass_matrix(frames))
     if E is not None:

@@ -15,7 +15,7 @@ from flexbase.measures import MEASURES, Measure
 from flexbase.model.loop import Asked, loop_on
 from flexbase.model.mounted import MountedArm
 from flexbase.plant import Plant, check_plant
-from flexbase.sweeps.engine.question import Question
+from flexbase.sweeps.engine.formula import Formula
 from flexbase.trace.kernel import Kernel, kernel_of
 
 SHARPNESS = 20.0  # of the smooth minimum, over the spread of the values: it lies at most a twentieth of it too low
@@ -44,7 +44,7 @@ class Objective:
     def kernel(self) -> Kernel:
         """Status and values, then the derivatives of each by the arm joints."""
         arm = self.arm
-        question = Question(arm, (self.measure,), tuple(range(arm.n)), (0.0,) * arm.n, E=self.E)
+        question = Formula(arm, (self.measure,), tuple(range(arm.n)), (0.0,) * arm.n, E=self.E)
         return kernel_of(question, arm.n, f"posture\n{question.recipe}", derivative=True)
 
     def __call__(self, joints: Array) -> tuple[Array, Array]:

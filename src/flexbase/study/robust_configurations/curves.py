@@ -15,7 +15,7 @@ from flexbase.model.loop import Asked
 from flexbase.plant import Plant
 from flexbase.study.robust_configurations.continuation import Equation, follow, near_polyline
 from flexbase.study.robust_configurations.misalignment import Misalignment, make_misalignment, tips_of
-from flexbase.study.tables import write_rows
+from flexbase.sweeps.answers.tables import write_rows
 from flexbase.sweeps.cells.grids import joint_box
 
 CELLS = 360  # along each joint: a curve is found if it is farther than this from the next one

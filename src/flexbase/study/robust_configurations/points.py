@@ -17,9 +17,9 @@ from flexbase.measures import MEASURES
 from flexbase.model.loop import Asked
 from flexbase.plant import Plant
 from flexbase.study.robust_configurations.misalignment import Misalignment, make_misalignment, tips_of
-from flexbase.study.tables import write_rows
+from flexbase.sweeps.answers.tables import write_rows
 from flexbase.sweeps.engine.evaluate import Engine
-from flexbase.sweeps.engine.question import Question
+from flexbase.sweeps.engine.formula import Formula
 from flexbase.sweeps.engine.status import OK
 
 COUNT, LARGEST = 1000, 1_000_000
@@ -207,5 +207,5 @@ def _samples(plant: Plant, count: int, bounds: Sequence[float] | None) -> Array:
 def _regular(equations: Misalignment, joints: Array) -> NDArray[np.bool_]:
     """Rows whose arm is not singular and whose inertia is definite, shape (S,)."""
     arm = equations.arm
-    question = Question(arm, (MEASURES["alignment"],), tuple(range(arm.n)), (0.0,) * arm.n, E=equations.E)
+    question = Formula(arm, (MEASURES["alignment"],), tuple(range(arm.n)), (0.0,) * arm.n, E=equations.E)
     return np.asarray(Engine(question).run(np.ascontiguousarray(joints.T)).status == OK)

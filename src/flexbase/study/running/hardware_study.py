@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, NamedTuple
 
@@ -13,6 +13,7 @@ from flexbase.checks import choose
 from flexbase.errors import FlexbaseError
 from flexbase.model.loop import Asked, LoopSpec, loop_on
 from flexbase.plant import Plant, Pose, check_plant
+from flexbase.requests import Progress, no_progress
 from flexbase.sampled.columns import below, cells, columns, legend
 from flexbase.sampled.figures import FIGURES
 from flexbase.sampled.judged import GOOD_MARGIN, judged
@@ -136,7 +137,7 @@ def hardware_study(
     settings: Sequence[Setting] = SETTINGS,
     loop: Asked = None,
     workers: int | None = None,
-    progress: Callable[[int, int], None] = lambda done, total: None,
+    progress: Progress = no_progress,
 ) -> HardwareStudy:
     """Every method at every setting on the same random poses, on `workers` processes (one a core if left out).
 
@@ -158,7 +159,7 @@ def hardware_study(
     for done, (_, (name, outcomes)) in enumerate(in_processes(outcomes_of, tasks, workers), start=1):
         for setting, outcome in zip(settings, outcomes, strict=True):
             found[name, setting].append(outcome)
-        progress(done, len(tasks))
+        progress("poses times methods", done, len(tasks))
     return HardwareStudy(
         plant.name, seed, tuple(_row(name, one, found[name, one]) for name in chosen for one in settings)
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
@@ -14,6 +14,7 @@ from flexbase.model.loop import Asked, loop_on
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose, check_pose
+from flexbase.requests import Progress, no_progress
 from flexbase.sampled.changes import Changed
 from flexbase.sampled.controller import SampledController
 from flexbase.sampled.judged import GOOD_MARGIN, SAFE, STABLE, UNSTABLE, Judged, robots_at
@@ -133,7 +134,7 @@ def recommend(
     loop: Asked = None,
     methods: Sequence[str] | None = None,
     workers: int | None = 1,
-    progress: Callable[[str, int, int], None] = lambda what, done, total: None,
+    progress: Progress = no_progress,
 ) -> Recommendation:
     """Judge every method at a pose as its loop would run, and choose.
 

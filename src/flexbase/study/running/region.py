@@ -2,22 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from flexbase.checks import Array, check_length, positive_number
+from flexbase.checks import Array, positive_number
 from flexbase.errors import InputError, SingularArm, Unreachable
 from flexbase.model.loop import Asked, loop_on
 from flexbase.model.task import BRANCHES, Gains
 from flexbase.plant import Pose, check_pose
+from flexbase.requests import Progress, no_progress
 from flexbase.sampled.controller import SampledController, pd_with_gain
 from flexbase.sampled.judged import judged
-from flexbase.sweeps.engine.pool import in_processes
-from flexbase.synthesis import HARDWARE_METHODS, controller_for
+from flexbase.sweeps.cells.axis import block_shape
+from flexbase.sweeps.cells.grids import tip_place
+from flexbase.sweeps.engine.poses import EachPose
+from flexbase.sweeps.engine.question import Column
+from flexbase.sweeps.engine.runner import run
+from flexbase.sweeps.engine.status import OK
+from flexbase.sweeps.requests import Cells, Execution
+from flexbase.synthesis import HARDWARE_METHODS
+from flexbase.synthesis.make import make_controller
 
 OUT_OF_REACH, UNSTABLE, STABLE, SAFE = range(4)
 MEANINGS = {
@@ -26,7 +34,7 @@ MEANINGS = {
     STABLE: "stable, no more",
     SAFE: "safe: with margins, and when changed",
 }
-MOST = 1_000_000
+BLOCK = 25  # cells that a process is given
 SAME = 1e-3  # rad or m
 
 
@@ -75,67 +83,80 @@ class Region:
         )
 
 
-class _Cell(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Grade:
+    """How a controller does at a pose; with gains, E alone is kept, and the task PD follows the arm."""
+
     controller: SampledController
-    gains: Gains | None  # where E alone is constant
-    target: tuple[float, ...]
-    branch: str
+    gains: Gains | None
+
+    def __call__(self, there: Pose) -> tuple[int, Sequence[float]]:
+        """Status, and UNSTABLE, STABLE or SAFE."""
+        controller = self.controller
+        if self.gains is not None:
+            controller = pd_with_gain(there, controller.sensing, self.gains, controller.E, controller.name)
+        found = judged(controller, there)
+        return OK, (UNSTABLE if not found.stable else SAFE if found.accepted() else STABLE,)
 
 
-def validity(
-    controller: SampledController,
-    gains: Gains | None = None,
+def region(
+    pose: Pose,
+    method: str | SampledController | None = None,
+    loop: Asked = None,
     *,
     half_width: float = 0.15,
     shape: Sequence[int] = (25, 25),
-    workers: int | None = None,
-    progress: Callable[[int, int], None] = lambda done, total: None,
+    execution: Execution = Execution(),  # noqa: B008
+    progress: Progress = no_progress,
 ) -> Region:
     """Verdicts in a window around the tip, over the first two task rows; the other rows stay where they are.
 
-    With `gains`, E is what stays constant, and the task PD with these gains follows the arm; without, the whole
-    controller does. half_width : of the window [m or rad]. Raises InputError.
+    Where the controller is task PD with a gain E, E is what stays constant, and the task law follows the arm; else the
+    whole controller does.
+
+    method : whose controller, made at the pose; or one that was made, kept whole; or left out, for task PD with the
+        compensator of `loop`, or without any
+    half_width : of the window [m or rad]; shape : cells along x and y
+    Raises InputError, Infeasible.
     """
-    pose = controller.pose
+    check_pose(pose)
+    meant = loop_on(pose.arm, loop)
+    if isinstance(method, SampledController):
+        controller, kept = method, None
+    else:
+        controller = make_controller(pose, method, loop)
+        kept = meant.gains if method is None or HARDWARE_METHODS[method].law == "gains" else None
     half = positive_number("half_width", half_width, "m or rad")
-    counts = check_length("shape", shape, 2, "cells along x and y").astype(int)
-    if pose.arm.k < 2 or counts.min() < 2 or counts.prod() > MOST:
-        raise InputError(
-            f"shape: {list(shape)} over {pose.arm.k} task rows; two rows and 2 to {MOST} cells are needed."
-        )
-    x, y = (pose.tip[i] + np.linspace(-half, half, int(counts[i])) for i in (0, 1))
-    branch = _branch(pose)
-    targets = [(float(a), float(b), *pose.tip[2:].tolist()) for b in y for a in x]
-    cells = [_Cell(controller, gains, target, branch) for target in targets]
-    found = np.zeros(len(cells), dtype=np.int8)
-    for done, (number, code) in enumerate(in_processes(_grade, cells, workers), start=1):
-        found[number] = code
-        progress(done, len(cells))
-    grade = found.reshape(len(y), len(x))
-    distance = np.hypot(x[None, :] - pose.tip[0], y[:, None] - pose.tip[1])
-    here = _grade(_Cell(controller, gains, tuple(pose.tip.tolist()), branch))
-    radii = [_radius(distance, grade, code, half) if here >= code else None for code in (SAFE, STABLE)]
     rows, units = pose.arm.task.rows, pose.arm.task.units
-    what = "controller" if gains is None else "E"
-    tip = float(pose.tip[0]), float(pose.tip[1])
+    if pose.arm.k < 2 or len(shape) != 2 or min(shape) < 2:
+        raise InputError(f"shape: {list(shape)} over {pose.arm.k} task rows; two rows and 2 cells or more are needed.")
+    branch, tip = _branch(pose), pose.tip
+    bounds = tuple(float(tip[i]) + side * half for i in (0, 1) for side in (-1, 1))
+    cells = Cells(shape=tuple(shape), bounds=bounds, hold=tuple(tip[2:].tolist()), branch=branch).checked()
+    place = tip_place(pose.plant, cells, targets=True)
+    grade_of = Grade(controller, kept)
+    near = pose.joints
+    question = EachPose(pose.plant, (Column("grade", {"units": "1"}),), grade_of, branch, near)
+    block = block_shape(place.domain.shape, BLOCK)
+    found = run(question, place.domain, block, Execution.checked(execution), progress, {})
+    grade = np.where(found["status"].values == OK, found["grade"].values, OUT_OF_REACH).astype(np.int8)
+    y, x = (axis.values for axis in place.domain.axes)
+    distance = np.hypot(x[None, :] - tip[0], y[:, None] - tip[1])
+    _, (here,) = grade_of(pose.plant.at_tip(tip, branch, near=near))
+    radii = [_radius(distance, grade, code, half) if here >= code else None for code in (SAFE, STABLE)]
+    what = "controller" if kept is None else "E"
     return Region(
-        pose.plant.name, controller.name, what, (rows[0], rows[1]), (units[0], units[1]), x, y, grade, tip, *radii
+        pose.plant.name,
+        controller.name,
+        what,
+        (rows[0], rows[1]),
+        (units[0], units[1]),
+        x,
+        y,
+        grade,
+        (float(tip[0]), float(tip[1])),
+        *radii,
     )
-
-
-def _grade(cell: _Cell) -> int:
-    pose = cell.controller.pose
-    try:
-        there = pose.plant.at_tip(cell.target, cell.branch, near=pose.joints)
-    except (Unreachable, SingularArm):
-        return OUT_OF_REACH
-    controller = cell.controller
-    if cell.gains is not None:
-        controller = pd_with_gain(there, controller.sensing, cell.gains, controller.E, controller.name)
-    found = judged(controller, there)
-    if not found.stable:
-        return UNSTABLE
-    return SAFE if found.accepted() else STABLE
 
 
 def _branch(pose: Pose) -> str:
@@ -158,23 +179,3 @@ def _radius(distance: Array, grade: NDArray[np.int8], code: int, half: float) ->
 
 def _shown(radius: float | None, unit: str) -> str:
     return "none" if radius is None else f"{radius:.3f} {unit}"
-
-
-def region(
-    pose: Pose,
-    method: str,
-    loop: Asked = None,
-    half_width: float = 0.15,
-    progress: Callable[[int, int], None] = lambda done, total: None,
-    shape: Sequence[int] = (25, 25),
-) -> Region:
-    """`validity` of a method's controller at a pose: of its E where it is task PD with E, else of the whole controller.
-
-    Raises InputError, Infeasible.
-    """
-    check_pose(pose)
-    meant = loop_on(pose.arm, loop)
-    controller = controller_for(pose, method, meant.sensing, meant.gains)
-    follows = HARDWARE_METHODS[method].law == "gains"
-    kept = meant.gains if follows else None
-    return validity(controller, kept, half_width=half_width, shape=shape, progress=progress)

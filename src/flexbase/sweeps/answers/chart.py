@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +14,14 @@ from flexbase.errors import InputError
 from flexbase.measures import MEASURES
 from flexbase.sweeps.answers.angles import crossing
 from flexbase.sweeps.answers.summary import measures_of
+from flexbase.sweeps.answers.tables import dims_of
 from flexbase.sweeps.cells.axis import Axis
+from flexbase.sweeps.engine.question import MODE
 from flexbase.sweeps.engine.status import statuses_of
-from flexbase.sweeps.kept.layout import MODE
+
+if TYPE_CHECKING:
+    import xarray
+
 
 LARGEST = 1000  # cells along an axis that are drawn: more are thinned out evenly
 SLICES = 6  # of a third axis
@@ -100,7 +105,7 @@ def said(name: str, value: float, unit: str) -> str:
     return f"{name} = {value:.4g}" if unit == "1" else f"{name} = {value:.4g} {unit}"
 
 
-def chart_of(dataset: Any, largest: int = LARGEST, slices: int = SLICES) -> Chart:
+def chart_of(dataset: xarray.Dataset, largest: int = LARGEST, slices: int = SLICES) -> Chart:
     """The picture of a sweep over up to three axes, or over samples; only the cells that it shows are kept in memory.
 
     largest, slices : as `thinned` takes them
@@ -109,7 +114,7 @@ def chart_of(dataset: Any, largest: int = LARGEST, slices: int = SLICES) -> Char
     plane = thinned(dataset, largest, slices)
     dims = _dims(plane)
     plane = plane.isel({dim: 0 for dim in plane["status"].dims if dim not in dims}).load()
-    coordinates = [name for name in plane.coords if _is_drawn(plane, name, dims)]
+    coordinates = [name for name in map(str, plane.coords) if _is_drawn(plane, name, dims)]
     return Chart(
         str(plane.attrs["robot"]),
         _remark(plane),
@@ -123,7 +128,7 @@ def chart_of(dataset: Any, largest: int = LARGEST, slices: int = SLICES) -> Char
     )
 
 
-def thinned(dataset: Any, largest: int = LARGEST, slices: int = SLICES) -> Any:
+def thinned(dataset: xarray.Dataset, largest: int = LARGEST, slices: int = SLICES) -> xarray.Dataset:
     """The cells of a sweep that a picture shows, still unread: evenly chosen, of samples the first.
 
     largest : cells along an axis; slices : of a third axis, both ends among them
@@ -145,12 +150,12 @@ def thinned(dataset: Any, largest: int = LARGEST, slices: int = SLICES) -> Any:
     return dataset.isel({**chosen, **{dim: _chosen(dataset.sizes[dim], slices) for dim in dims[:-2]}})
 
 
-def _dims(dataset: Any) -> tuple[str, ...]:
+def _dims(dataset: xarray.Dataset) -> tuple[str, ...]:
     """Axes with more than one value."""
-    return tuple(dim for dim in dataset["status"].dims if dataset.sizes[dim] > 1)
+    return tuple(dim for dim in dims_of(dataset) if dataset.sizes[dim] > 1)
 
 
-def _is_drawn(plane: Any, name: str, dims: tuple[str, ...]) -> bool:
+def _is_drawn(plane: xarray.Dataset, name: str, dims: tuple[str, ...]) -> bool:
     return dims == ("sample",) and plane[name].dims == dims and name not in dims
 
 
@@ -168,11 +173,11 @@ def _chosen(size: int, slices: int) -> list[int]:
     return [round(place) for place in np.linspace(0, size - 1, max(even, default=slices)).tolist()]
 
 
-def _axis(plane: Any, name: str) -> Axis:
+def _axis(plane: xarray.Dataset, name: str) -> Axis:
     return Axis(name, str(plane[name].attrs.get("units", "1")), plane[name].values)
 
 
-def _layers(plane: Any) -> Iterator[Layer]:
+def _layers(plane: xarray.Dataset) -> Iterator[Layer]:
     for name in measures_of(plane):
         variable = plane[name]
         unit, zero_is = str(variable.attrs["units"]), variable.attrs.get("zero_is")
@@ -189,9 +194,9 @@ def _layers(plane: Any) -> Iterator[Layer]:
             yield Layer(name, title, unit, values, zero_is, crossing(line, zeros) if zero_is else None)
 
 
-def _remark(plane: Any) -> str:
+def _remark(plane: xarray.Dataset) -> str:
     """What the sweep's attributes say, and where axes that do not show stand."""
-    still = [name for name in plane.coords if not plane[name].dims and name not in (MODE, "sample")]
+    still = [name for name in map(str, plane.coords) if not plane[name].dims and name not in (MODE, "sample")]
     words = [said(name, float(plane[name]), str(plane[name].attrs.get("units", "1"))) for name in still]
     given = plane.attrs
     state = given.get("difference") or given.get("judged") or ("compensated" if given["compensated"] else "")

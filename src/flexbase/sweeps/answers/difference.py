@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,13 +10,18 @@ from flexbase.checks import Array
 from flexbase.errors import InputError
 from flexbase.sweeps.answers.angles import short_way
 from flexbase.sweeps.answers.summary import measures_of
+from flexbase.sweeps.answers.tables import dims_of
 from flexbase.sweeps.engine.status import CHANGED, GAINED, LOST, OK, STATUS, flags
+
+if TYPE_CHECKING:
+    import xarray
+
 
 LARGEST = 20_000_000  # cells
 SAME = 1e-12  # of an axis' largest value: coordinates that differ by less are equal
 
 
-def difference(before: Any, after: Any) -> Any:
+def difference(before: xarray.Dataset, after: xarray.Dataset) -> xarray.Dataset:
     """After minus before in every cell, of the measures that both have; an `xarray.Dataset` of a sweep's form.
 
     Assumes the same axes with the same values. A measure has a value where both have one. Angles differ by the shorter
@@ -50,14 +55,14 @@ def difference(before: Any, after: Any) -> Any:
     return found.assign_attrs(difference=_words(before, after), flexbase_recipe_before=recipe)
 
 
-def _check_same_cells(before: Any, after: Any) -> None:
+def _check_same_cells(before: xarray.Dataset, after: xarray.Dataset) -> None:
     for dataset in (before, after):
         if "status" not in dataset or not measures_of(dataset):
             raise InputError("difference: one of the two holds no sweep. Give what flexbase.sweeps returned.")
-    dims = before["status"].dims
+    dims = dims_of(before)
     if set(dims) != set(after["status"].dims):
         raise InputError(
-            f"difference: before has the axes {', '.join(dims)}, after {', '.join(after['status'].dims)}. "
+            f"difference: before has the axes {', '.join(dims)}, after {', '.join(dims_of(after))}. "
             "Sweep the same ones."
         )
     drawn = [name for name in before.coords if before[name].dims == dims and name in after.coords and name not in dims]
@@ -80,7 +85,7 @@ def _change(old: Array, new: Array) -> Array:
         return np.where(np.isinf(old) & (old == new), 0.0, new - old)
 
 
-def _words(before: Any, after: Any) -> str:
+def _words(before: xarray.Dataset, after: xarray.Dataset) -> str:
     if before.attrs["robot"] != after.attrs["robot"]:
         return f"minus {before.attrs['robot']}"
     states = ("without compensator", "with compensator")

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from flexbase.checks import Array
-from flexbase.errors import InputError
 from flexbase.measures import MEASURES
+from flexbase.sheets.plain import plain
+from flexbase.sweeps.answers.tables import check_small, dims_of, places_of, write_columns
+from flexbase.sweeps.engine.question import COMPANION, MEASURED, MODE
 from flexbase.sweeps.engine.status import statuses_of
-from flexbase.sweeps.kept.layout import COMPANION, MEASURED, MODE
+
+if TYPE_CHECKING:
+    import xarray
+
 
 PART = 1 << 22  # cells of a store that are looked at together
-LARGEST_TABLE = 4_000_000  # cells written as CSV or JSON
 
 
 class Extent(NamedTuple):
@@ -29,13 +32,13 @@ class Extent(NamedTuple):
     unit: str
 
 
-def measures_of(dataset: Any) -> list[str]:
+def measures_of(dataset: xarray.Dataset) -> list[str]:
     """Names of the measures that were asked for: registered ones, and those that say so themselves."""
-    named = (name for name in dataset.data_vars if name in MEASURES or MEASURED in dataset[name].attrs)
+    named = (str(name) for name in dataset.data_vars if name in MEASURES or MEASURED in dataset[name].attrs)
     return [name for name in named if COMPANION not in dataset[name].attrs]
 
 
-def extents(dataset: Any) -> list[Extent]:
+def extents(dataset: xarray.Dataset) -> list[Extent]:
     """Every measure's extent, read a part at a time."""
     found = []
     for name in measures_of(dataset):
@@ -53,7 +56,7 @@ def extents(dataset: Any) -> list[Extent]:
     return found
 
 
-def counts(dataset: Any) -> dict[int, int]:
+def counts(dataset: xarray.Dataset) -> dict[int, int]:
     """How many cells have each status; those that none has are left out."""
     total = np.zeros(1 + max(statuses_of(dataset)), dtype=np.int64)
     for part in _parts(dataset, dataset["status"]):
@@ -61,7 +64,7 @@ def counts(dataset: Any) -> dict[int, int]:
     return {code: int(number) for code, number in enumerate(total) if number}
 
 
-def _parts(dataset: Any, variable: Any) -> Iterator[Array]:
+def _parts(dataset: xarray.Dataset, variable: xarray.DataArray) -> Iterator[Array]:
     """The values of a variable, along its first dimension."""
     first = variable.dims[0]
     step = max(1, PART // max(1, variable.size // dataset.sizes[first]))
@@ -69,7 +72,7 @@ def _parts(dataset: Any, variable: Any) -> Iterator[Array]:
         yield np.asarray(variable.isel({first: slice(begin, begin + step)}).values)
 
 
-def summary(dataset: Any) -> str:
+def summary(dataset: xarray.Dataset) -> str:
     """A line on the cells and one on each measure."""
     meanings = statuses_of(dataset)
     cells = ", ".join(f"{number} {meanings[code]}" for code, number in counts(dataset).items())
@@ -81,20 +84,19 @@ def summary(dataset: Any) -> str:
     return "\n".join(lines)
 
 
-def document(dataset: Any) -> dict[str, Any]:
+def document(dataset: xarray.Dataset) -> dict[str, Any]:
     """Plain numbers; cells without a value hold None. Axes fastest first. Raises InputError for a very large sweep."""
-    _check_small(dataset)
-    dims = dataset["status"].dims
+    check_small(dataset)
     return {
         "robot": dataset.attrs["robot"],
         "compensated": bool(dataset.attrs["compensated"]),
         **({"difference": dataset.attrs["difference"]} if "difference" in dataset.attrs else {}),
         "axes": [
             {"name": name, "unit": dataset[name].attrs["units"], "values": dataset[name].values.tolist()}
-            for name in reversed(dims)
+            for name in reversed(dims_of(dataset))
         ],
         "measures": {
-            name: {"unit": dataset[name].attrs["units"], "values": _with_none(dataset[name].values)}
+            name: {"unit": dataset[name].attrs["units"], "values": plain(dataset[name].values)}
             for name in measures_of(dataset)
         },
         "status": dataset["status"].values.tolist(),
@@ -102,53 +104,14 @@ def document(dataset: Any) -> dict[str, Any]:
     }
 
 
-def save_csv(dataset: Any, path: str | Path) -> None:
+def save_csv(dataset: xarray.Dataset, path: str | Path) -> None:
     """One line a cell. Raises InputError where the place cannot be written, and for a very large sweep."""
-    _check_small(dataset)
-    dims = dataset["status"].dims
-    columns: dict[str, np.ndarray] = {}
-    for name in reversed(dims):
-        shape = [-1 if dim == name else 1 for dim in dims]
-        columns[name] = np.broadcast_to(dataset[name].values.reshape(shape), dataset["status"].shape)
-    columns |= {
-        name: dataset[name].values for name in dataset.coords if dataset[name].dims == dims and name not in dims
-    }
+    check_small(dataset)
+    columns = places_of(dataset)
     for name in measures_of(dataset):
         values = dataset[name].values
         if MODE in dataset[name].dims:
             columns |= {f"{name}_{i + 1}": values[..., i] for i in range(values.shape[-1])}
         else:
             columns[name] = values
-    columns["status"] = dataset["status"].values
-    try:
-        with open(path, "w", newline="", encoding="utf-8") as file:
-            table = csv.writer(file)
-            table.writerow(columns)
-            table.writerows(zip(*(column.ravel().tolist() for column in columns.values()), strict=True))
-    except OSError as fault:
-        raise InputError(f"{path}: cannot be written ({fault.strerror}). Give a file in an existing folder.") from fault
-
-
-def save_netcdf(dataset: Any, path: str | Path) -> None:
-    """One NetCDF file, whole or not at all. Raises InputError."""
-    _check_small(dataset)
-    place = Path(path)
-    part = place.with_name(f".{place.name}.part")
-    try:
-        dataset.to_netcdf(part, engine="scipy")
-        part.replace(place)
-    except OSError as fault:
-        part.unlink(missing_ok=True)
-        raise InputError(f"{path}: cannot be written ({fault.strerror}). Give a file in an existing folder.") from fault
-
-
-def _check_small(dataset: Any) -> None:
-    cells = dataset["status"].size
-    if cells > LARGEST_TABLE:
-        raise InputError(f"{cells} cells: tables hold up to {LARGEST_TABLE}. Give a name that ends in .zarr.")
-
-
-def _with_none(values: Array) -> Any:
-    if values.ndim:
-        return [_with_none(part) for part in values]
-    return float(values) if np.isfinite(values) else None
+    write_columns(path, {**columns, "status": dataset["status"].values})

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +15,11 @@ Reached = NDArray[np.bool_] | None  # None: inputs are complete in every cell
 Solve = Callable[[Array], tuple[Array, NDArray[np.bool_]]]  # tip targets (T, k) -> joints (T, n) and which are reached
 RANDOM, HALTON = "random", "halton"
 SAMPLINGS = (RANDOM, HALTON)
+
+
+def as_they_are(targets: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """The `solve` of those who look for joints themselves."""
+    return targets, np.ones(len(targets), dtype=bool)
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +35,11 @@ class Grid:
     solve: Solve | None = None
     held: tuple[float, ...] = ()
     varied: tuple[int, ...] = ()
+
+    @property
+    def drawn(self) -> Mapping[str, str]:
+        """Inputs that are told cell by cell, with their units: none, the axes tell them."""
+        return {}
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -85,6 +95,11 @@ class Samples:
         return (Axis("sample", "1", np.arange(self.count, dtype=float)),)
 
     @property
+    def drawn(self) -> Mapping[str, str]:
+        """Inputs that are told sample by sample, with their units."""
+        return dict(zip(self.names, self.units, strict=True))
+
+    @property
     def shape(self) -> tuple[int, ...]:
         """How many samples."""
         return (self.count,)
@@ -109,4 +124,31 @@ class Samples:
         return np.asarray(qmc.Halton(len(self.names), scramble=True, rng=self.seed).fast_forward(begin).random(cells))
 
 
-Domain = Grid | Samples
+@dataclass(frozen=True, eq=False)
+class Listed:
+    """Inputs one by one, such as the tips of a path. rows : shape (cells, inputs)"""
+
+    rows: Array
+
+    @property
+    def axes(self) -> tuple[Axis, ...]:
+        """Their number."""
+        return (Axis("sample", "1", np.arange(len(self.rows), dtype=float)),)
+
+    @property
+    def drawn(self) -> Mapping[str, str]:
+        """None: whoever gave the list has it."""
+        return {}
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """How many."""
+        return (len(self.rows),)
+
+    def inputs(self, box: Box) -> tuple[Array, Reached]:
+        """A question's inputs, shape (inputs, cells)."""
+        ((begin, end),) = box
+        return self.rows[begin:end].T, None
+
+
+Domain = Grid | Samples | Listed

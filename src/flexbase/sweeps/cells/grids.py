@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
-from flexbase.checks import Array, check_length
+from flexbase.checks import check_length
 from flexbase.dynamics.inverse.arm_angles import arm_angles_of_many
 from flexbase.dynamics.inverse.branches import elbow_of
 from flexbase.dynamics.inverse.two_joint_arm import TwoJointArm, two_joint_arm
@@ -15,14 +16,14 @@ from flexbase.errors import InputError, nearest_name
 from flexbase.model.task import check_branch
 from flexbase.plant import Plant
 from flexbase.sweeps.cells.axis import Axis
-from flexbase.sweeps.cells.domain import Domain, Grid, Samples
+from flexbase.sweeps.cells.domain import Domain, Grid, Samples, as_they_are
 from flexbase.sweeps.cells.parameters import Parameter, parameters_of
+from flexbase.sweeps.requests import JOINTS, SAMPLES, TIP, Cells, Range
 
 BENT = 0.5  # rad or m, where joints outside a joint map stand: at zero many arms are stretched
 MARGIN = 1.02  # half-width of the default window, over the arm's reach
 FARTHEST = 1e5  # rad or m: beyond it sines lose digits
 COUNT, FINE = 50, 400  # default cells along an axis: of several, of two
-Range = tuple[float, float, int]
 
 
 class Place(NamedTuple):
@@ -35,19 +36,19 @@ class Place(NamedTuple):
     side: float = 1.0
 
 
-def tip_place(
-    plant: Plant,
-    shape: Sequence[int] | None,
-    bounds: Sequence[float] | None,
-    rows: Sequence[str],
-    hold: Sequence[float],
-    branch: str | None,
-    vary: Mapping[str, Range],
-) -> Place:
-    """A grid over task rows, the first two if none are named; `hold` gives the others. Raises InputError."""
+def place_of(plant: Plant, cells: Cells) -> Place:
+    """The cells of a plant, as a question reads them. Raises InputError."""
+    return {TIP: tip_place, JOINTS: joint_place, SAMPLES: sample_place}[cells.over](plant, cells)
+
+
+def tip_place(plant: Plant, cells: Cells, *, targets: bool = False) -> Place:
+    """A grid over task rows, the first two if none are named; `hold` gives the others. Raises InputError.
+
+    targets : inputs are the tip's targets, of all k task rows, instead of joints
+    """
     arm, task = plant.arm, plant.arm.task
-    chosen = tuple(rows) or task.rows[:2]
-    if len(chosen) < 2 and not rows:
+    chosen = tuple(cells.axes) or task.rows[:2]
+    if len(chosen) < 2 and not cells.axes:
         raise InputError(
             f"map over tip: {plant.name} has one task row, two are needed; a map over joints needs two arm joints."
         )
@@ -55,68 +56,51 @@ def tip_place(
     others = [i for i in range(task.k) if i not in varied]
     rest = check_length(
         "hold",
-        hold,
+        cells.hold,
         len(others),
         f"give hold, one for each task row that does not vary ({' '.join(task.rows[i] for i in others) or 'none'})",
     )
-    held = np.zeros(task.k)
-    held[others] = rest
+    whole = np.zeros(task.k)
+    whole[others] = rest
+    held = tuple(whole.tolist())
     planar = two_joint_arm(arm.mechanism, task, arm.base.equilibrium)
-    window = _window(plant, planar, varied, task.units) if bounds is None else _checked_bounds(bounds, len(varied))
+    window = _checked_bounds(cells.bounds, len(varied)) or _window(plant, planar, varied, task.units)
     names, units = [task.rows[i] for i in varied], [task.units[i] for i in varied]
-    parameters, axes = _axes(names, units, window, _counts(shape, len(varied)), plant, vary)
-    branch = check_branch(branch or task.branch)
+    parameters, axes = _axes(names, units, window, plant, cells)
+    branch = check_branch(cells.branch or task.branch)
+    if targets:
+        return Place(Grid(axes, parameters, as_they_are, held, varied), varied, held)
     if planar is not None:
-        side = -1.0 if branch == "-" else 1.0
-        return Place(Grid(axes, parameters), varied, tuple(held.tolist()), planar, side)
-
-    def solve(targets: Array) -> tuple[Array, np.ndarray]:
-        return arm_angles_of_many(arm.mechanism, task, arm.base.equilibrium, targets, branch)
-
-    grid = Grid(axes, parameters, solve, tuple(held.tolist()), varied)
-    return Place(grid, tuple(range(arm.n)), (0.0,) * arm.n)
+        return Place(Grid(axes, parameters), varied, held, planar, -1.0 if branch == "-" else 1.0)
+    solve = partial(arm_angles_of_many, arm.mechanism, task, arm.base.equilibrium, branch=branch)
+    return Place(Grid(axes, parameters, solve, held, varied), tuple(range(arm.n)), (0.0,) * arm.n)
 
 
-def joint_place(
-    plant: Plant,
-    shape: Sequence[int] | None,
-    bounds: Sequence[float] | None,
-    joints: Sequence[str],
-    hold: Sequence[float],
-    vary: Mapping[str, Range],
-) -> Place:
+def joint_place(plant: Plant, cells: Cells) -> Place:
     """A grid over arm joints, the elbow and the one before if none are named; the others stand at `hold`, n values."""
-    names, units, varied, held, window = joint_box(plant, bounds, joints, hold)
-    parameters, axes = _axes(names, units, window, _counts(shape, len(varied)), plant, vary)
+    names, units, varied, held, window = joint_box(plant, cells.bounds, cells.axes, cells.hold)
+    parameters, axes = _axes(names, units, window, plant, cells)
     return Place(Grid(axes, parameters), varied, held)
 
 
-def sample_place(
-    plant: Plant,
-    shape: Sequence[int] | None,
-    bounds: Sequence[float] | None,
-    joints: Sequence[str],
-    hold: Sequence[float],
-    vary: Mapping[str, Range],
-    sampling: str,
-    seed: int,
-) -> Place:
+def sample_place(plant: Plant, cells: Cells) -> Place:
     """Samples of a box of arm joints, all of them if none are named, and of the parameters' ranges."""
-    everything = tuple(joints) or plant.arm.joint_names
-    names, units, varied, held, window = joint_box(plant, bounds, everything, hold)
-    if shape is not None and len(shape) != 1:
-        raise InputError(f"shape: {tuple(shape)} given, but samples have one count. Give a single number.")
+    everything = tuple(cells.axes) or plant.arm.joint_names
+    names, units, varied, held, window = joint_box(plant, cells.bounds, everything, cells.hold)
+    if cells.shape is not None and len(cells.shape) != 1:
+        raise InputError(f"shape: {tuple(cells.shape)} given, but samples have one count. Give a single number.")
+    vary = cells.vary or {}
     known = _known_parameters(plant, vary)
     low = [*window[0::2], *(vary[name][0] for name in vary)]
     high = [*window[1::2], *(vary[name][1] for name in vary)]
     domain = Samples(
-        _counts(shape, 1)[0] if shape else 10_000,
+        10_000 if cells.shape is None else _counts(cells.shape, 1)[0],
         (*names, *vary),
         (*units, *(known[name].unit for name in vary)),
         np.array(low),
         np.array(high),
-        sampling,
-        seed,
+        cells.sampling,
+        cells.seed,
     )
     return Place(domain, varied, held)
 
@@ -133,7 +117,7 @@ def joint_box(
     chosen = tuple(joints) or names[elbow - 1 : elbow + 1]
     varied = _places("arm joint", chosen, names)
     whole = [edge for place in varied for edge in ranges[place]]
-    window = whole if bounds is None else _checked_bounds(bounds, len(varied))
+    window = _checked_bounds(bounds, len(varied)) or whole
     held = check_length("hold", hold, arm.n, "one for each arm joint") if len(hold) else np.full(arm.n, BENT)
     return list(chosen), [arm.joint_units[place] for place in varied], varied, tuple(held.tolist()), window
 
@@ -151,11 +135,11 @@ def _axes(
     names: Sequence[str],
     units: Sequence[str],
     window: Sequence[float],
-    counts: Sequence[int],
     plant: Plant,
-    vary: Mapping[str, Range],
+    cells: Cells,
 ) -> tuple[int, tuple[Axis, ...]]:
     """How many axes are parameters, and all axes, slowest first."""
+    vary, counts = cells.vary or {}, _counts(cells.shape, len(names))
     known = _known_parameters(plant, vary)
     outer = [Axis(name, known[name].unit, np.linspace(*vary[name])) for name in vary]
     inner = [
@@ -183,13 +167,16 @@ def _known_parameters(plant: Plant, vary: Mapping[str, Range]) -> dict[str, Para
 def _counts(shape: Sequence[int] | None, axes: int) -> tuple[int, ...]:
     if shape is None:
         return (FINE,) * axes if axes <= 2 else (COUNT,) * axes
-    counts = tuple(int(count) for count in shape) if isinstance(shape, Sequence) else ()
+    counts = tuple(map(int, shape))
     if len(counts) != axes or min(counts) < 1:
         raise InputError(f"shape: {shape} is not {axes} counts from 1 up, one for each axis.")
     return counts
 
 
-def _checked_bounds(bounds: Sequence[float], axes: int) -> list[float]:
+def _checked_bounds(bounds: Sequence[float] | None, axes: int) -> list[float]:
+    """Low, high of each axis; empty where none are given."""
+    if bounds is None:
+        return []
     window = check_length("bounds", bounds, 2 * axes, "low, high of each axis in turn").tolist()
     if not all(low < high for low, high in zip(window[0::2], window[1::2], strict=True)):
         raise InputError(f"bounds: {window} are not low, high, low, high. Give each low below its high.")

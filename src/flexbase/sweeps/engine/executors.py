@@ -1,33 +1,42 @@
-"""Who runs the blocks: threads of this process, or workers of a Dask cluster. Results come as they finish."""
+"""Who runs the blocks: threads, processes, or the workers of a Dask cluster. Results come as they finish."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
-from typing import Any, Protocol
+from typing import Any
 
-from flexbase.checks import Array
+from numpy.typing import NDArray
+
 from flexbase.errors import InputError, import_extra
 from flexbase.sweeps.engine.job import Job, Work
+from flexbase.sweeps.engine.pool import in_processes
+from flexbase.sweeps.requests import Execution
 from flexbase.trace.kernel import cores
 
-Result = tuple[Work, Mapping[str, Array]]
+Arrays = Mapping[str, NDArray[Any]]
+Result = tuple[Work, Arrays]
 AHEAD = 2  # blocks a thread that wait or run: bounds the memory
 
 
-class Runs(Protocol):
-    """What blocks are given to."""
+def run_blocks(job: Job, blocks: Sequence[Work], execution: Execution) -> Iterator[Result]:
+    """The arrays of every block, by whom the execution says, else by all cores of this computer."""
+    if not blocks:
+        return
+    if execution.scheduler is not None:
+        yield from _by_dask(job, blocks, execution.scheduler)
+    elif execution.workers is not None or not job.question.threads:
+        for number, arrays in in_processes(job.run, blocks, execution.workers):
+            yield blocks[number], arrays
+    else:
+        yield from _by_threads(job, blocks)
 
-    def run(self, work: Work) -> Mapping[str, Any]:
-        """The arrays of a block."""
-        ...
 
-
-def by_threads(job: Runs, blocks: Sequence[Work]) -> Iterator[Result]:
+def _by_threads(job: Job, blocks: Sequence[Work]) -> Iterator[Result]:
     """Run on all cores of this process. A block that has begun is finished even if the caller stops."""
     with ThreadPoolExecutor(cores(), thread_name_prefix="flexbase-sweep") as pool:
-        running: dict[Future[Mapping[str, Array]], Work] = {}
+        running: dict[Future[Arrays], Work] = {}
         rest = iter(blocks)
         try:
             while True:
@@ -44,12 +53,9 @@ def by_threads(job: Runs, blocks: Sequence[Work]) -> Iterator[Result]:
                 waiting.cancel()
 
 
-def by_dask(job: Job, blocks: Sequence[Work], scheduler: str | None, workers: int | None) -> Iterator[Result]:
-    """Run on a Dask cluster: a running one at an address, or `workers` processes started here for this sweep.
-
-    A worker that dies costs the block that it was at: Dask gives it to another. Raises InputError, MissingExtra.
-    """
-    with _client(scheduler, workers) as client:
+def _by_dask(job: Job, blocks: Sequence[Work], scheduler: str) -> Iterator[Result]:
+    """Run on a Dask cluster. A worker that dies costs the block that it was at: Dask gives it to another."""
+    with _client(scheduler) as client:
         distributed = import_extra("distributed", "maps")
         carried = client.scatter(job, broadcast=True)
         futures = {client.submit(_run, carried, work, pure=False, retries=2): work for work in blocks}
@@ -57,22 +63,13 @@ def by_dask(job: Job, blocks: Sequence[Work], scheduler: str | None, workers: in
             yield futures.pop(done), result
 
 
-def _run(job: Job, work: Work) -> Mapping[str, Array]:
+def _run(job: Job, work: Work) -> Arrays:
     return job.run(work)
 
 
 @contextmanager
-def _client(scheduler: str | None, workers: int | None) -> Iterator[Any]:
+def _client(scheduler: str) -> Iterator[Any]:
     distributed = import_extra("distributed", "maps")
-    if scheduler is None:
-        with (
-            distributed.LocalCluster(
-                n_workers=workers or cores(), threads_per_worker=1, dashboard_address=None, silence_logs=50
-            ) as cluster,
-            distributed.Client(cluster) as client,
-        ):
-            yield client
-        return
     try:
         client = distributed.Client(scheduler, timeout=5)
     except (OSError, ValueError, TimeoutError) as fault:

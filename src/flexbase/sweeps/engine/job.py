@@ -1,4 +1,4 @@
-"""One block of a sweep: inputs, answers, and where they go. What a thread or a worker is given."""
+"""One block of cells: inputs, answers, and where they go. What a thread, a process or a worker is given."""
 
 from __future__ import annotations
 
@@ -6,13 +6,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flexbase.checks import Array
 from flexbase.sweeps.cells.axis import Box, extent
-from flexbase.sweeps.cells.domain import Domain, Samples
-from flexbase.sweeps.engine.evaluate import COMPILED, Engine, compiled
+from flexbase.sweeps.cells.domain import Domain
 from flexbase.sweeps.engine.question import Question
 from flexbase.sweeps.engine.status import UNREACHABLE
 from flexbase.sweeps.kept.store import Store
@@ -22,14 +23,13 @@ Work = tuple[tuple[int, ...], Box]  # a block's place in the grid of blocks, and
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """A sweep as its blocks see it; `store` is where they are written, or None to hand them back."""
+    """A question as its blocks see it; `store` is where they are written, or None to hand them back."""
 
     question: Question
     domain: Domain
-    engine: str
     store: Path | None = None
 
-    def run(self, work: Work) -> Mapping[str, Array]:
+    def run(self, work: Work) -> Mapping[str, NDArray[Any]]:
         """The arrays of a block, none if they were written."""
         place, box = work
         arrays = self._answers(box)
@@ -38,35 +38,33 @@ class Job:
         _opened(self.store).write(place, box, arrays)
         return {}
 
-    def _answers(self, box: Box) -> dict[str, Array]:
+    def _answers(self, box: Box) -> dict[str, NDArray[Any]]:
         inputs, reached = self.domain.inputs(box)
-        engine = Engine(self.question) if self.engine != COMPILED else _compiled(self.question.recipe, self)
-        shape = extent(box)
-        if reached is None:
-            block = engine.run(inputs, threads=1)
-            status, values = block.status, block.values
-        else:
-            cells = np.flatnonzero(reached)
-            block = engine.run(np.ascontiguousarray(inputs[:, cells]), threads=1)
-            status = np.full(reached.size, UNREACHABLE, dtype=np.int8)
-            status[cells] = block.status
-            values = {}
-            for name, part in block.values.items():
-                values[name] = np.full((reached.size, *part.shape[1:]), np.nan)
-                values[name][cells] = part
-        drawn = dict(zip(self.domain.names, inputs, strict=True)) if isinstance(self.domain, Samples) else {}
-        folded = {name: part.reshape(*shape, *part.shape[1:]) for name, part in {**drawn, **values}.items()}
+        status, values = self._asked(inputs, reached)
+        drawn = dict(zip(self.domain.drawn, inputs, strict=False))
+        shape, whole = extent(box), {one.name for one in self.question.columns if one.of_block}
+        folded = {
+            name: part if name in whole else part.reshape((*shape, *part.shape[1:]))
+            for name, part in {**drawn, **values}.items()
+        }
         return {"status": status.reshape(shape), **folded}
 
-
-_ENGINES: dict[str, Engine] = {}
-
-
-def _compiled(recipe: str, job: Job) -> Engine:
-    """One kernel a process and recipe: machine code cannot be sent to a worker, but its recipe can."""
-    if recipe not in _ENGINES:
-        _ENGINES[recipe] = compiled(job.question)
-    return _ENGINES[recipe]
+    def _asked(self, inputs: Array, reached: NDArray[np.bool_] | None) -> tuple[NDArray[np.int8], Mapping[str, Any]]:
+        """Answers of all cells, where only some are reached."""
+        if reached is None:
+            block = self.question.answer(inputs)
+            return block.status, block.values
+        cells = np.flatnonzero(reached)
+        block = self.question.answer(np.ascontiguousarray(inputs[:, cells]))
+        status = np.full(reached.size, UNREACHABLE, dtype=np.int8)
+        status[cells] = block.status
+        values = {}
+        for one in self.question.columns:
+            part = values[one.name] = block.values[one.name]
+            if not one.of_block:
+                values[one.name] = np.full((reached.size, *part.shape[1:]), one.missing, dtype=part.dtype)
+                values[one.name][cells] = part
+        return status, values
 
 
 @lru_cache(maxsize=8)

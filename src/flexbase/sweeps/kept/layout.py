@@ -1,49 +1,47 @@
-"""The arrays of a sweep's answer: names, dimensions, units and what their zero means."""
+"""The arrays of an answer: names, dimensions, units and what their zero means."""
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from typing import Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from flexbase.sweeps.cells.domain import Domain, Samples
-from flexbase.sweeps.engine.question import Question
-from flexbase.sweeps.engine.status import STATUS, flags
+from flexbase.sweeps.cells.domain import Domain
+from flexbase.sweeps.engine.question import MODE, Question
+from flexbase.sweeps.engine.status import flags
 from flexbase.sweeps.kept.store import FINISHED, Field
 
-MODE = "mode"
-MEASURED = "measured"  # attribute of a measure that no registry knows, such as a verdict's
-COMPANION = "companion"  # attribute of measures that nobody asked for: they draw the zero line of another
+if TYPE_CHECKING:
+    import xarray
 
 
-def fields_of(question: Question, domain: Domain, block: tuple[int, ...], asked: Collection[str]) -> dict[str, Field]:
-    """Coordinates, status, measures and the marks of finished blocks; measures that were not asked for are marked."""
+def fields_of(question: Question, domain: Domain, block: tuple[int, ...]) -> dict[str, Field]:
+    """Coordinates, status, columns and the marks of finished blocks."""
     dims, shape = tuple(axis.name for axis in domain.axes), domain.shape
+    counts = tuple(-(-size // step) for size, step in zip(shape, block, strict=True))
+    blocks, one_each = tuple(f"block_{dim}" for dim in dims), (1,) * len(counts)
     fields: dict[str, Field] = {}
     for axis in domain.axes:
         whole = axis.values.shape
         fields[axis.name] = Field("float64", (axis.name,), whole, whole, {"units": axis.unit}, True, axis.values)
-    if isinstance(domain, Samples):
-        for name, unit in zip(domain.names, domain.units, strict=True):
-            fields[name] = Field("float64", dims, shape, block, {"units": unit}, True)
-    if any(one.per_mode for one in question.measures):
-        numbers = np.arange(1, question.arm.m + 1)
+    for name, unit in domain.drawn.items():
+        fields[name] = Field("float64", dims, shape, block, {"units": unit}, True)
+    modes = {one.more[1] for one in question.columns if one.more and one.more[0] == MODE}
+    for count in modes:
         said = {"long_name": "vibration mode, slowest first"}
-        fields[MODE] = Field("int64", (MODE,), numbers.shape, numbers.shape, said, True, numbers)
-    fields["status"] = Field("int8", dims, shape, block, flags(STATUS))
-    for one in question.measures:
-        said = {"units": one.unit, "long_name": one.purpose}
-        said |= {"zero_is": one.zero_is} if one.zero_is else {}
-        said |= {} if one.name in asked else {COMPANION: "1"}
-        modes = (question.arm.m,) if one.per_mode else ()
-        fields[one.name] = Field("float64", (*dims, MODE) if modes else dims, shape + modes, block + modes, said)
-    counts = tuple(-(-size // step) for size, step in zip(shape, block, strict=True))
-    fields[FINISHED] = Field("int8", tuple(f"block_{dim}" for dim in dims), counts, (1,) * len(counts), {})
+        fields[MODE] = Field("int64", (MODE,), (count,), (count,), said, True, np.arange(1, count + 1))
+    fields["status"] = Field("int8", dims, shape, block, flags(question.meanings))
+    for one in question.columns:
+        of, cells, each = (blocks, counts, one_each) if one.of_block else (dims, shape, block)
+        more, size = ((one.more[0],), (one.more[1],)) if one.more else ((), ())
+        fields[one.name] = Field(one.dtype, of + more, cells + size, each + size, one.told)
+    fields[FINISHED] = Field("int8", blocks, counts, one_each, {})
     return fields
 
 
-def empty(fields: dict[str, Field]) -> dict[str, np.ndarray]:
+def empty(fields: Mapping[str, Field]) -> dict[str, NDArray[Any]]:
     """The same arrays in memory: coordinates filled in, all else to be."""
     return {
         name: np.array(field.values) if field.values is not None else np.zeros(field.shape, field.dtype)
@@ -52,8 +50,10 @@ def empty(fields: dict[str, Field]) -> dict[str, np.ndarray]:
     }
 
 
-def to_dataset(fields: dict[str, Field], arrays: dict[str, np.ndarray], attributes: dict[str, Any]) -> Any:
-    """An `xarray.Dataset` of arrays in memory."""
+def to_dataset(
+    fields: Mapping[str, Field], arrays: Mapping[str, NDArray[Any]], attributes: Mapping[str, Any]
+) -> xarray.Dataset:
+    """Arrays in memory as a dataset."""
     import xarray
 
     variables = {name: (fields[name].dims, array, dict(fields[name].attributes)) for name, array in arrays.items()}

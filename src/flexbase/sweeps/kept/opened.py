@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import json
-import warnings
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexbase.errors import FlexbaseWarning, InputError, import_extra
+from flexbase.cautions import caution
+from flexbase.errors import InputError, import_extra
 from flexbase.sweeps.kept.store import FINISHED, RECIPE
 
+if TYPE_CHECKING:
+    import xarray
 
-def open_dataset(path: str | Path) -> Any:
+
+def open_dataset(path: str | Path) -> xarray.Dataset:
     """A sweep's Zarr store or NetCDF file as an `xarray.Dataset`; a store's values are read when they are used.
 
     Warns where a store is unfinished: the missing cells hold NaN. Raises InputError, MissingExtra.
@@ -37,7 +40,7 @@ def open_dataset(path: str | Path) -> Any:
     return found
 
 
-def _measures(found: Any) -> list[str]:
+def _measures(found: xarray.Dataset) -> list[str]:
     """Names of a store's measures in the order of its recipe: a folder has none."""
     recipe = json.loads(found.attrs[RECIPE])["measures"]
     rest = [name for name in found.data_vars if name not in (*recipe, "status", FINISHED)]
@@ -46,8 +49,4 @@ def _measures(found: Any) -> list[str]:
 
 def _warn_unfinished(place: Path, finished: np.ndarray) -> None:
     if missing := int(np.count_nonzero(finished == 0)):
-        warnings.warn(
-            f"{place}: {missing} of {finished.size} blocks are missing and hold no values. Go on with --resume.",
-            FlexbaseWarning,
-            stacklevel=3,
-        )
+        caution(f"{place}: {missing} of {finished.size} blocks are missing and hold no values. Go on with --resume.")

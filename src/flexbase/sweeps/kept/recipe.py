@@ -11,6 +11,7 @@ import numpy as np
 
 from flexbase.checks import Array
 from flexbase.model.digest import model_digest
+from flexbase.model.mounted import MountedArm
 from flexbase.sweeps.cells.domain import Domain, Samples
 from flexbase.sweeps.cells.grids import Place
 from flexbase.sweeps.engine.question import Question
@@ -18,19 +19,18 @@ from flexbase.sweeps.engine.question import Question
 VERSIONED = ("flexbase", "numpy")
 
 
-def recipe_of(question: Question, place: Place, engine: str, branch: str, block: tuple[int, ...]) -> dict[str, Any]:
+def recipe_of(question: Question, arm: MountedArm, place: Place, branch: str, block: tuple[int, ...]) -> dict[str, Any]:
     """Everything that decides the result, as plain JSON values."""
     from importlib.metadata import version
 
     return {
-        "robot": question.arm.name,
-        "model": model_digest(question.arm),
-        "measures": [one.name for one in question.measures],
+        "robot": arm.name,
+        "model": model_digest(arm),
+        "measures": [one.name for one in question.columns],
         "domain": _domain(place.domain),
         "held": list(place.held),
         "branch": branch,
-        "compensator": None if question.E is None else question.E.tolist(),
-        "engine": engine,
+        **question.recipe,
         "block": list(block),
         "versions": {name: version(name) for name in VERSIONED},
     }
