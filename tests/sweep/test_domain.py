@@ -120,10 +120,7 @@ def test_rows_are_used_where_the_compiler_is_missing(paper: fb.Plant, monkeypatc
     """Auto falls back with a word; compiled, asked for by name, is refused with the mend."""
     import sys
 
-    from flexbase.sweeps.engine import evaluate
-
     monkeypatch.setitem(sys.modules, "llvmlite.binding", None)
-    monkeypatch.setattr(evaluate, "_READY", {})  # kernels of this process, made when it was there
     with pytest.warns(fb.FlexbaseWarning, match="fast"):
         found = fb.sweep(paper, cells=fb.Cells(shape=(500, 500)))
     assert "rows" in found.attrs["flexbase_recipe"]

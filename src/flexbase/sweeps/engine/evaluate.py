@@ -87,7 +87,8 @@ def chosen_engine(wanted: str, formula: Formula, evaluations: int) -> str:
     if wanted == ROWS or (wanted == AUTO and evaluations < WORTH_COMPILING):
         return ROWS
     try:
-        return engine_of(formula, COMPILED).name
+        _READY[formula.recipe] = compiled(formula)
+        return COMPILED
     except MissingExtra as missing:
         if wanted == COMPILED:
             raise
