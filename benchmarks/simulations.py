@@ -36,7 +36,7 @@ class JointPD:
     damping: float
 
     def torque(self, seen: Measured) -> Vector:
-        wanted = self.goal.q[self.goal.arm.m :].tolist()
+        wanted = self.goal.joints.tolist()
         return tuple(
             self.stiffness * (to - joint) - self.damping * rate
             for to, joint, rate in zip(wanted, seen.joints, seen.rates, strict=True)
@@ -81,19 +81,19 @@ def _kernel(law: JointPD, starts: np.ndarray, step: float = STEP) -> np.ndarray:
     phase, N = Phase(Step(law.goal, Always(law), None), 0.0, END), len(starts)
     state = np.zeros((phase.step.state, starts.shape[1]))
     state[:N] = starts
-    return phase.run(state, starts[law.goal.arm.m :], step, threads=1)[:N]
+    return phase.run(state, starts[list(law.goal.arm.parts.active)], step, threads=1)[:N]
 
 
 def _rollout(goal: fb.Pose, law: JointPD, starts: np.ndarray):  # type: ignore[no-untyped-def]
     """MuJoCo's batch on one thread, with nothing switched on that these runs do not need."""
-    N, m = goal.arm.N, goal.arm.m
+    N = goal.arm.N
     model = mujoco.MjModel.from_xml_string(mjcf_of(goal.arm))
     model.opt.integrator, model.opt.timestep = mujoco.mjtIntegrator.mjINT_RK4, STEP
     for flag in ("CONSTRAINT", "CONTACT"):
         model.opt.disableflags |= getattr(mujoco.mjtDisableBit, f"mjDSBL_{flag}")
     model.actuator_biastype[:] = mujoco.mjtBias.mjBIAS_AFFINE
     model.actuator_gainprm[:, 0] = 0.0
-    model.actuator_biasprm[:, 0] = law.stiffness * goal.q[m:]
+    model.actuator_biasprm[:, 0] = law.stiffness * goal.joints
     model.actuator_biasprm[:, 1:3] = -law.stiffness, -law.damping
     states = np.zeros((starts.shape[1], mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS)))
     states[:, 1 : 1 + N] = starts.T
@@ -127,7 +127,7 @@ def simulate_many_vs_simulate() -> list[Ratio]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", fb.FlexbaseWarning)
         gain = fb.design(goal, "exact", natural_frequency=346.8)
-    centre = paper.at_tip(NEAR).q[1:]
+    centre = paper.at_tip(NEAR).joints
     starts = centre + np.random.default_rng(0).uniform(-0.1, 0.1, (RUNS, 2))
 
     def many(compensator: fb.Compensator | None = gain) -> np.ndarray:

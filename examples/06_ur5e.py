@@ -8,7 +8,7 @@ warnings.simplefilter("ignore", fb.FlexbaseWarning)  # the certificate holds the
 
 plant = fb.load("ur5e-pedestal")
 goal = plant.at_tip([0.72, -0.35, 1.3], "-+-")  # shoulder, elbow, wrist
-start = plant.at_tip([0.67, -0.25, 1.3], "-+-", goal.q[plant.arm.m :])  # of many postures the one beside the goal's
+start = plant.at_tip([0.67, -0.25, 1.3], "-+-", goal.joints)  # of many postures the one beside the goal's
 print(fb.modes(goal).summary())
 
 compensator = fb.design(goal, method="convex")

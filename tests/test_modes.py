@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import warnings
 from decimal import Decimal, getcontext
 
@@ -209,3 +210,19 @@ def test_verdict_agrees_with_the_phase_of_the_response():
         assert found.positive_real == (lowest > -1e-12)
         verdicts.append(found.positive_real)
     assert len(set(verdicts)) == 2
+
+
+@pytest.mark.parametrize("verb", [flexbase.modes, flexbase.verdict, flexbase.manipulability])
+def test_cautions_are_kept_with_the_answer(paper_pose, verb):
+    """A compensator of another robot is used, and said to be, once; the answer keeps it and its summary says it."""
+    borrowed = dataclasses.replace(flexbase.design(paper_pose, natural_frequency=346.8), robot="another")
+    with pytest.warns(FlexbaseWarning, match='designed for "another"') as said:
+        found = verb(paper_pose, borrowed)
+    assert len(said) == 1
+    assert found.cautions == ('compensator: designed for "another", used on "ueda2003".',)
+    assert f"caution: {found.cautions[0]}" in found.summary()
+
+
+def test_unknown_convention_is_refused(paper_pose):
+    with pytest.raises(flexbase.InputError, match=r'convention: "torqe" is unknown\. Did you mean "torque"'):
+        flexbase.manipulability(paper_pose, convention="torqe")

@@ -21,7 +21,7 @@ from flexbase.control.measured import Measured
 from flexbase.errors import Infeasible, InputError
 from flexbase.linear.second_order import SecondOrder
 from flexbase.model.loop import Asked, loop_on
-from flexbase.plant import Pose
+from flexbase.plant import Pose, check_pose
 from flexbase.trace.algebra import Vector, matvec, minus, plus, scale, transpose
 
 FELT = 1e-4  # cosine between a base motion, as arm torques drive it, and tip forces, below which it is not felt
@@ -93,6 +93,7 @@ def null_space_damping(
     kind : "blind" or "consistent"; left out, consistent where V = beta Jp holds, else blind
     Raises InputError for an arm that is not redundant, Infeasible where the kind does not exist or does not help.
     """
+    check_pose(pose)
     arm = pose.arm
     if arm.n <= arm.k:
         raise InputError(f"null space: {arm.n} arm joints and {arm.k} task rows leave no self-motion to damp.")

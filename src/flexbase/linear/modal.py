@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from flexbase.cautions import caution
+from flexbase.cautions import caution, collected
 from flexbase.checks import Array
 from flexbase.linear.linearise import (
     ReducedArrays,
@@ -96,6 +96,7 @@ class Modes(Told):
     rigid_mode : R_0, shape (k, k)  [U03 eq 6]
     positive_real : the simple verdict by residues; `caveat` says how far it may be trusted
     compensated : whether a compensator is at work
+    cautions : what should be known of the loop and of the modes
     """
 
     pose: Pose
@@ -104,6 +105,7 @@ class Modes(Told):
     positive_real: bool
     caveat: str
     compensated: bool
+    cautions: tuple[str, ...] = ()
 
     document: ClassVar = (
         "q=pose.q",
@@ -138,6 +140,7 @@ class Modes(Told):
             table(COLUMNS, (mode.row() for mode in self.modes)),
             facts(*residues, ("R_0 [m/(N s^2)]", matrix(self.rigid_mode))),
             answer(self.positive_real, "Positive real", "Not positive real", self.caveat),
+            cautions=self.cautions,
         )
 
 
@@ -150,18 +153,18 @@ def modes(pose: Pose, loop: Asked = None) -> Modes:
     Warns where a mode is overdamped. Raises InputError if M - E is not positive definite.
     """
     check_pose(pose)
-    asked = loop_on(pose.arm, loop)
-    E = asked.gain
-    check_definite_inertia(pose, E)
-    analyse = _reduced if is_reducible(pose) else _full
-    found, rigid_mode, caveat = analyse(pose, E)
-    overdamped = [mode.label for mode in found if mode.damping_ratio >= 1.0]
-    if overdamped:
-        caution(f"{pose.plant.name}: overdamped base, real poles at {', '.join(overdamped)}.")
+    with collected() as said:
+        asked = loop_on(pose.arm, loop)
+        E = asked.gain
+        check_definite_inertia(pose, E)
+        found, rigid_mode, caveat = (_reduced if is_reducible(pose) else _full)(pose, E)
+        overdamped = [mode.label for mode in found if mode.damping_ratio >= 1.0]
+        if overdamped:
+            caution(f"{pose.plant.name}: overdamped base, real poles at {', '.join(overdamped)}.")
     verdict = all(_is_positive(mode) for mode in found)
     if caveat in (PROPORTIONAL, INDICATOR) and _shares_one_beta(reduced_arrays(pose, E)):
         verdict, caveat = True, ONE_BETA
-    return Modes(pose, tuple(found), rigid_mode, verdict, caveat, asked.E is not None)
+    return Modes(pose, tuple(found), rigid_mode, verdict, caveat, asked.E is not None, tuple(said))
 
 
 def _reduced(pose: Pose, E: Array) -> tuple[list[Mode], Array, str]:

@@ -7,7 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from flexbase.checks import Array
+from flexbase.cautions import collected
+from flexbase.checks import Array, choose
 from flexbase.linear.linearise import check_definite_inertia
 from flexbase.measures.registry import Configuration, measure
 from flexbase.model.loop import Asked, loop_on
@@ -56,11 +57,13 @@ class Manipulability(Told):
     rotation : angle from the original to the compensated longest axis, for two task rows counted from x to y within
         (-pi/2, pi/2], otherwise without sign [rad]
     volume_ratio : compensated over original
+    cautions : what should be known of the compensator
     """
 
     pose: Pose
     original: Ellipsoid
     compensated: Ellipsoid
+    cautions: tuple[str, ...] = ()
 
     document: ClassVar = (
         "convention=original.convention",
@@ -109,6 +112,7 @@ class Manipulability(Told):
                 table([words("ellipsoid"), Column("semi-axis", "m/s^2"), *directions], rows),
                 change if compensated else None,
             ),
+            cautions=self.cautions,
         )
 
 
@@ -118,10 +122,13 @@ def manipulability(pose: Pose, loop: Asked = None, convention: str = "force") ->
     Raises InputError if M - E is not positive definite or the convention is unknown.
     """
     check_pose(pose)
-    asked = loop_on(pose.arm, loop)
+    choose("convention", convention, dict.fromkeys(CONVENTIONS))
+    with collected() as said:
+        asked = loop_on(pose.arm, loop)
     check_definite_inertia(pose, asked.gain)
     original = _ellipsoid(pose, np.zeros_like(asked.gain), convention)
-    return Manipulability(pose, original, original if asked.E is None else _ellipsoid(pose, asked.gain, convention))
+    compensated = original if asked.E is None else _ellipsoid(pose, asked.gain, convention)
+    return Manipulability(pose, original, compensated, tuple(said))
 
 
 def _ellipsoid(pose: Pose, E: Array, convention: str) -> Ellipsoid:

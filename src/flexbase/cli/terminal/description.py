@@ -21,9 +21,9 @@ def _joints(found: Description) -> RenderableType:
     columns, rows = ["joint", "part", "type"], [[joint["name"], joint["part"], joint["type"]] for joint in found.joints]
     if found.pose is not None:
         kinds = [joint["unit"] for joint in found.joints]
-        base = len(kinds) - len(found.pose.holding_torque)
-        torques = [*[""] * base, *map(number, found.pose.holding_torque)]
-        efforts = [*[""] * base, *units.each("effort", kinds[base:])]
+        arm, none = found.plant.arm, [""] * found.plant.arm.m
+        torques = arm.parts.whole(none, [*map(number, found.pose.holding_torque)])
+        efforts = arm.parts.whole(none, [*units.each("effort", arm.joint_units)])
         columns += ["position", "holding torque"]
         for row, q, kind, torque, effort in zip(rows, found.pose.q, kinds, torques, efforts, strict=True):
             row += [f"{number(q)} {kind}", f"{torque} {effort}".strip()]

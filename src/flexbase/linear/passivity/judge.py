@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from flexbase.cautions import collected
 from flexbase.checks import Array, check_definite, check_symmetric, positive_number
 from flexbase.errors import InputError
 from flexbase.linear.linearise import is_reducible
@@ -21,7 +24,7 @@ from flexbase.linear.passivity.vibration import (
     vibration_of_system,
 )
 from flexbase.linear.second_order import SecondOrder
-from flexbase.model.loop import Asked, loop_on
+from flexbase.model.loop import Asked, Gain, loop_on
 from flexbase.plant import Pose, check_pose
 
 HIDDEN = 1e-6  # of the response near one resonance alone: a shortage that deserves a word
@@ -44,13 +47,15 @@ def verdict(model: Pose | SecondOrder, loop: Asked = None, bandwidth: float | No
             raise InputError("compensator: given with a system. Take E from its M, or give a pose.")
         return _judged(None, vibration_of_system(_checked(model)), band)
     check_pose(model)
-    alone = None if is_reducible(model) else _judged(None, base_vibration(model, loop), band)
-    return _judged(model, vibration_of(model, loop), band, alone, loop_on(model.arm, loop).E is not None)
+    with collected() as said:
+        asked = loop_on(model.arm, loop)
+    gain = Gain(asked.gain)
+    alone = None if is_reducible(model) else _judged(None, base_vibration(model, gain), band)
+    found = _judged(model, vibration_of(model, gain), band, alone)
+    return replace(found, compensated=asked.E is not None, cautions=tuple(said))
 
 
-def _judged(
-    pose: Pose | None, vibration: Vibration, band: Interval, alone: Verdict | None = None, compensated: bool = False
-) -> Verdict:
+def _judged(pose: Pose | None, vibration: Vibration, band: Interval, alone: Verdict | None = None) -> Verdict:
     whole = vibration.force_to_velocity()
     port = compressed(whole)
     gain = largest_gain(port, band)
@@ -90,7 +95,6 @@ def _judged(
         undamped=tuple(mode.frequency for mode in vibration.undamped),
         bandwidth=None if np.isinf(band[1]) else band[1],
         caveats=(*_caveats(vibration, bad, rigid_fails, all(one.settled for one in searched)), *cautions),
-        compensated=compensated,
         base_alone=alone,
         port=port,
     )

@@ -43,10 +43,10 @@ class Verdict(Told):
     rigid_mode : R0, shape (k, k)
     undamped : frequencies of vibrations without damping [rad/s]
     caveats : plain words
-    compensated : whether a compensator is at work
     base_alone : the verdict with the springs and dampers of the base alone, where gravity's stiffness or joint friction
         are counted; else None
     port : F without directions that have no response
+    compensated : whether a compensator is at work; cautions : what should be known of it
     """
 
     pose: Pose | None
@@ -68,9 +68,10 @@ class Verdict(Told):
     undamped: tuple[float, ...]
     bandwidth: float | None
     caveats: tuple[str, ...]
-    compensated: bool
     base_alone: Verdict | None
     port: Port = field(repr=False)
+    compensated: bool = False
+    cautions: tuple[str, ...] = ()
 
     document: ClassVar = (
         "*_place",
@@ -141,6 +142,7 @@ class Verdict(Told):
                 ("output-passivity index", index),
             ),
             answer(self.positive_real, "Positive real", "Not positive real", " ".join(self.caveats)),
+            cautions=self.cautions,
         )
 
     def _place(self) -> dict[str, Any]:
