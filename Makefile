@@ -56,7 +56,7 @@ $(VENV)/.core: pyproject.toml | $(VENV)/bin/python
 	touch $@
 
 $(VENV)/.bare: pyproject.toml requirements/tested.txt | $(VENV)/bin/python
-	$(PIP) --editable . pytest pytest-xdist hypothesis
+	$(PIP) --editable . pytest pytest-xdist hypothesis hatchling
 	touch $@
 
 $(VENV)/.test: pyproject.toml requirements/tested.txt | $(VENV)/bin/python

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterable
+from collections.abc import Generator, Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -31,47 +33,51 @@ def paper_pose(paper: Plant) -> Pose:
 # without them is in tests/core, and fails if it asks.
 EXTRAS = {"casadi", "clarabel", "control", "cvxopt", "cvxpy", "dask", "distributed"}
 EXTRAS |= {"jsonschema", "llvmlite", "mujoco", "pinocchio", "plotly", "zarr"}
+ASKED: list[str] = []  # what the test that runs has asked for in vain, whoever caught the exception
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--core", action="store_true", help="without extras: leave out the tests that ask for one")
 
 
-def pytest_pycollect_makemodule(module_path: object, parent: pytest.Collector) -> pytest.Module | None:
+def pytest_configure(config: pytest.Config) -> None:
+    if config.getoption("core"):
+        MissingExtra.__init__ = lambda self, *words: ASKED.append(*words)  # type: ignore[method-assign]
+
+
+def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> pytest.Module | None:
     return CoreModule.from_parent(parent, path=module_path) if parent.config.getoption("core") else None
 
 
 class CoreModule(pytest.Module):
-    """A test file that is left out where it imports what is not installed."""
+    """A test file that is left out where it imports what is not installed, or asks for it meanwhile."""
 
     def collect(self) -> Iterable[pytest.Item | pytest.Collector]:
-        try:
+        with left_out(self):
             return super().collect()
-        except self.CollectError as fault:
-            if _asks_for_an_extra(self, fault.__cause__):
-                pytest.skip(str(fault.__cause__), allow_module_level=True)
-            raise
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_setup(item: pytest.Item) -> Generator[None, None, None]:
-    yield from _left_out(item)
+    with left_out(item):
+        yield
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call(item: pytest.Item) -> Generator[None, None, None]:
-    yield from _left_out(item)
+    with left_out(item):
+        yield
 
 
-def _left_out(item: pytest.Item) -> Generator[None, None, None]:
+@contextmanager
+def left_out(node: pytest.Item | pytest.Collector) -> Iterator[None]:
+    """Skip what fails after it asked for an extra; only with --core, and nothing of tests/core."""
+    ASKED.clear()
     try:
         yield
-    except (MissingExtra, ModuleNotFoundError) as fault:
-        if item.config.getoption("core") and _asks_for_an_extra(item, fault):
-            pytest.skip(str(fault))
+    except Exception as fault:
+        package = getattr(fault.__cause__ or fault, "name", None) or ""
+        asked = ASKED or package.partition(".")[0] in EXTRAS or "is not installed. Install it" in str(fault)
+        if asked and node.config.getoption("core") and "core" not in node.path.parent.parts:
+            pytest.skip(str(fault), allow_module_level=True)
         raise
-
-
-def _asks_for_an_extra(node: pytest.Item | pytest.Collector, fault: BaseException | None) -> bool:
-    foreign = isinstance(fault, ModuleNotFoundError) and (fault.name or "").partition(".")[0] in EXTRAS
-    return (foreign or isinstance(fault, MissingExtra)) and "core" not in node.path.parent.parts

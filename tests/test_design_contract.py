@@ -10,6 +10,7 @@ import dataclasses
 import json
 import warnings
 from functools import cache
+from itertools import product
 
 import numpy as np
 import pytest
@@ -34,6 +35,12 @@ SYSTEMS = {
     "redundant": lambda: random_pose(4, 1, 3, 2),
 }
 
+SEVERAL, MISSED = "2 base joints, but this method shapes one", "the first mode misses its targets by"
+REFUSED = dict.fromkeys(product(["exact", "recursive"], ["two modes planar", "two modes in space"]), SEVERAL)
+REFUSED |= dict.fromkeys(product(["recursive", "task-priority"], ["sliding pair", "space n=2", "space n=3"]), MISSED)
+UNCLAIMED = {("task-priority", "two modes planar"), ("task-priority", "two modes in space")}  # residuals above a tenth
+CASES = [pair for pair in product(flexbase.METHODS, SYSTEMS) if pair not in REFUSED]
+
 FREQUENCIES_FREE = {"convex", "bounded"}  # methods that aim at positive realness alone unless asked for more
 
 
@@ -54,16 +61,16 @@ def is_ours(warning):
     return True
 
 
-def everywhere():
-    return [(method, system) for method in sorted(flexbase.METHODS) for system in SYSTEMS]
-
-
-@pytest.fixture(params=everywhere(), ids=lambda pair: f"{pair[0]}, {pair[1]}")
+@pytest.fixture(params=CASES, ids=", ".join)
 def case(request):
     pose, compensator, said = designed(*request.param)
-    if compensator is None:
-        pytest.skip(said[0])
+    assert compensator is not None, said
     return pose, compensator, said
+
+
+@pytest.fixture(params=[pair for pair in CASES if pair not in UNCLAIMED], ids=", ".join)
+def claimed(request):
+    return designed(*request.param)
 
 
 def independent_modes(pose, E):
@@ -127,10 +134,16 @@ def check_targets(pose, E, compensator):
 
 
 def test_every_method_and_every_system_is_used():
-    """No method refuses everything, and no system is refused by all: skipped cases cannot hide an empty test."""
-    accepted = [(method, system) for method, system in everywhere() if designed(method, system)[1] is not None]
-    assert {method for method, _ in accepted} == set(flexbase.METHODS)
-    assert {system for _, system in accepted} == set(SYSTEMS)
+    """No method refuses everything, and no system is refused by all."""
+    assert {method for method, _ in CASES} == set(flexbase.METHODS)
+    assert {system for _, system in CASES} == set(SYSTEMS)
+
+
+@pytest.mark.parametrize("pair", REFUSED, ids=", ".join)
+def test_what_does_not_apply_is_refused_with_its_reason(pair):
+    _, compensator, said = designed(*pair)
+    assert compensator is None
+    assert REFUSED[pair] in said[0]
 
 
 def test_certificate_is_the_truth(case):
@@ -172,12 +185,16 @@ def test_gain_is_symmetric_and_belongs_to_the_pose(case):
     assert compensator.method in flexbase.METHODS
 
 
-def test_targets_hold_where_the_residual_says_so(case):
-    """Each w_i is 0 and each omega_i raised, up to the certified residual; where that is large nothing is claimed."""
-    pose, compensator, _ = case
-    if compensator.certificate.target_residual > 0.1 or pose.arm.k == 1:
-        pytest.skip(f"residual {compensator.certificate.target_residual:.2g}: the certificate claims nothing")
+def test_targets_hold(claimed):
+    """Each w_i is 0 and each omega_i raised, up to the certified residual."""
+    pose, compensator, _ = claimed
+    assert compensator.certificate.target_residual <= 0.1
     check_targets(pose, compensator.E, compensator)
+
+
+@pytest.mark.parametrize("pair", UNCLAIMED, ids=", ".join)
+def test_a_large_residual_claims_nothing(pair):
+    assert 0.1 < designed(*pair)[1].certificate.target_residual < 0.3
 
 
 def test_the_empty_answer_fails_these_checks(case):

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from flexbase.errors import import_extra
 from flexbase.trace import cache
 from flexbase.trace.algebra import Scalar, Vector, absolute, independence, larger, ldl, select, smaller, solve, sqrt
 from flexbase.trace.kernel import GRAIN, kernel_of
@@ -158,6 +159,7 @@ def test_no_cache_is_no_fault(folder: str, monkeypatch: pytest.MonkeyPatch) -> N
 
 def test_kernels_of_two_processes_agree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What another process cached is what this one computes."""
+    import_extra("casadi", "fast")
     monkeypatch.setenv(cache.FOLDER, str(tmp_path))
     code = "from tests.trace.test_kernel import *; kernel_of(everything, 3, 'shared')"
     subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(__file__).parents[2], timeout=120)
