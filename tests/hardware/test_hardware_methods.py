@@ -32,8 +32,9 @@ SYSTEMS = {
     "paper, slow camera": lambda: (fb.load("ueda2003").at_tip(PAPER_TIP), Sensing(rate=4000.0, task_every=4)),
     "UR5e": lambda: (fb.load("ur5e-platform").at([0.3, -1.2, 1.4, -0.5, 0.8, 0.2]), Sensing()),
 }
-REFUSED = {("recursion", "UR5e"), ("exact", "UR5e")}  # they shape one base joint
+REFUSED = {("recursive", "UR5e"), ("exact", "UR5e")}  # they shape one base joint
 CASES = [pair for pair in product(HARDWARE_METHODS, SYSTEMS) if pair not in REFUSED]
+SLOW = {("sampled", "UR5e"), ("constant", "UR5e")}  # searches over 21 gains
 EXACT_DELAYS = [pair for pair in CASES if pair[1] != "paper, slow camera"]  # there the delay margin is approximate
 
 
@@ -46,7 +47,11 @@ def made(method: str, system: str) -> tuple[SampledController, HardwareVerdict]:
     return controller, hardware_verdict(controller)
 
 
-@pytest.fixture(params=CASES, ids=", ".join)
+def marked(pairs: list[tuple[str, str]]) -> list[object]:
+    return [pytest.param(one, id=", ".join(one), marks=[pytest.mark.slow] * (one in SLOW)) for one in pairs]
+
+
+@pytest.fixture(params=marked(CASES))
 def case(request: pytest.FixtureRequest) -> tuple[SampledController, HardwareVerdict]:
     return made(*request.param)
 
@@ -132,7 +137,7 @@ def test_torque_disk_margin_is_tight(method: str) -> None:
     assert at(1.05 * verdict.disk_margin_torque).max() > 1.0
 
 
-@pytest.mark.parametrize("pair", EXACT_DELAYS, ids=", ".join)
+@pytest.mark.parametrize("pair", marked(EXACT_DELAYS))
 def test_delay_margin_is_the_delayed_loop(pair: tuple[str, str]) -> None:
     """Stable with every whole number of samples below the margin, unstable with the next; none where none is stable."""
     controller, verdict = made(*pair)
