@@ -5,15 +5,15 @@ from pathlib import Path
 import flexbase as fb
 
 plant = fb.load("ueda2003")
-print(fb.best_posture(plant, [0.33, -0.25]).summary())
+print(fb.postures(plant, [0.33, -0.25]).summary())
 print(fb.robust_curves(plant).summary())
 
 holes = [[0.33, -0.25], [0.33, -0.10], [0.45, -0.10], [0.45, -0.25]]
-layout = fb.best_layout(plant, holes, within=0.15)
+layout = fb.layout(plant, holes, within=0.15)
 print(layout.summary())
 
 arm = fb.load("ur5e-pedestal")
-found = fb.best_posture(arm, [0.4, 0.2, 1.0])
+found = fb.postures(arm, [0.4, 0.2, 1.0])
 print(f"\n{arm.name}: w = {found.best.value:.2g} of the worst mode, instead of {found.usual.value:.2g}")
 print(fb.modes(found.best.pose).summary())
 print(fb.robust_points(arm, modes=1, count=500).summary())

@@ -10,8 +10,8 @@ import pytest
 
 import flexbase
 from flexbase import FlexbaseWarning, InputError
+from flexbase.compensators.judge.gain_shortage import relative_shortage, working_damping
 from flexbase.compensators.judge.implementable import BoundedGain
-from flexbase.compensators.judge.shortage import relative_shortage, working_damping
 from flexbase.compensators.search.descent import descend, shortage_and_slope
 from flexbase.model.loop import Gain
 from systems.oracle import FullSystem

@@ -10,9 +10,9 @@ import pytest
 
 import flexbase
 from flexbase import FlexbaseWarning, Infeasible
-from flexbase.compensators.choice import least_lacking
+from flexbase.compensators.judge.gain_shortage import relative_shortage
 from flexbase.compensators.judge.implementable import BoundedGain
-from flexbase.compensators.judge.shortage import relative_shortage
+from flexbase.compensators.judge.least_lacking import least_lacking
 from flexbase.compensators.search.descent import descend
 from systems.passivity import loop_radius, passivity
 from systems.random_plants import random_pose

@@ -12,7 +12,7 @@ import scipy.linalg
 import flexbase
 from flexbase import FlexbaseWarning, Infeasible, InputError
 from flexbase.compensators.judge.implementable import BoundedGain
-from flexbase.compensators.judge.statement import statement
+from flexbase.compensators.judge.why_positive_real import statement
 from flexbase.compensators.search.descent import descend
 from flexbase.compensators.search.mobility_program import MobilityProgram
 from flexbase.compensators.search.two_modes import TwoModes, damping_ratio_bound

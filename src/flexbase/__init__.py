@@ -45,10 +45,10 @@ from flexbase.simulation import (
 from flexbase.simulation.plants.mjcf import to_mjcf
 from flexbase.study.agreement.study import Agreement, agreement_study
 from flexbase.study.describe import Description, describe
-from flexbase.study.layout.layout import Layout, best_layout
+from flexbase.study.layout.best_layout import Layout, layout
 from flexbase.study.layout.targets import read_targets
 from flexbase.study.montecarlo import Criterion, Draws, Fixed, Lognormal, MonteCarlo, Normal, Uniform, montecarlo
-from flexbase.study.postures.posture import Postures, best_posture
+from flexbase.study.postures.best_postures import Postures, postures
 from flexbase.study.robust_configurations.curves import RobustCurves, robust_curves
 from flexbase.study.robust_configurations.points import RobustPoints, robust_points
 from flexbase.study.running.as_it_runs import AsItRuns, as_it_runs
@@ -125,8 +125,6 @@ __all__ = [
     "__version__",
     "agreement_study",
     "as_it_runs",
-    "best_layout",
-    "best_posture",
     "changed_pose",
     "compare",
     "describe",
@@ -137,6 +135,7 @@ __all__ = [
     "hardware_path",
     "hardware_study",
     "hardware_verdict",
+    "layout",
     "linearise",
     "load",
     "load_compensator",
@@ -147,6 +146,7 @@ __all__ = [
     "montecarlo",
     "open_dataset",
     "plot",
+    "postures",
     "read_targets",
     "recommend",
     "region",

@@ -23,7 +23,7 @@ def job(tmp_path: Path) -> Path:
 def test_posture_document_is_the_librarys(call: Call, paper: fb.Plant) -> None:
     found = call("posture", "ueda2003", "--tip", "0.33,-0.25", "--json")
     assert (found.status, found.err) == (0, "")
-    assert found.document("posture") == fb.best_posture(paper, [0.33, -0.25]).to_dict()
+    assert found.document("posture") == fb.postures(paper, [0.33, -0.25]).to_dict()
     one = call("posture", "ueda2003", "--tip", "0.33,-0.25", "--elbow", "+", "--measure", "alignment", "--json")
     assert [each["branch"] for each in one.document("posture")["postures"]] == ["+"]
 
@@ -45,7 +45,7 @@ def test_layout_document_is_the_librarys(call: Call, paper: fb.Plant, job: Path)
     found = call("layout", "ueda2003", "--targets", job, "--within", "0.05", "--along", "x", "--json")
     assert found.status == 0
     targets = fb.read_targets(paper.arm.task, job)
-    assert found.document("layout") == fb.best_layout(paper, targets, within=0.05, along=["x"]).to_dict()
+    assert found.document("layout") == fb.layout(paper, targets, within=0.05, along=["x"]).to_dict()
 
 
 def test_tables_fit_and_name_what_counts(call: Call, job: Path) -> None:

@@ -143,9 +143,9 @@ def test_reproduce_shows_the_table(call: Call, monkeypatch: pytest.MonkeyPatch, 
         rows = [("w_1", "-0.07", "-0.0708", "-0.0008", "read off"), ("omega_1", "300", "277", "-23", "read off")]
         return SimpleNamespace(summary_rows=lambda: rows, to_dict=lambda: {"rows": [{"ours": float("nan")}]})
 
-    stub = ModuleType("flexbase.report.paper.write")
+    stub = ModuleType("flexbase.report.paper.all_figures")
     stub.reproduce = reproduce  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "flexbase.report.paper.write", stub)
+    monkeypatch.setitem(sys.modules, "flexbase.report.paper.all_figures", stub)
     shown = call("reproduce", "--out", tmp_path / "p")
     assert asked == [tmp_path / "p"]
     assert shown.status == 0

@@ -92,7 +92,7 @@ def test_a_search_has_its_slopes(name: str) -> None:
 def test_a_search_makes_it_best(paper: fb.Plant, name: str) -> None:
     """Of both sides of the elbow the search takes the smaller value of a cost, the larger one of all others."""
     loop = fb.Gain(0.01 * np.eye(2)) if name == "algebraic_loop_radius" else None
-    found = fb.best_posture(paper, [0.33, -0.25], name, loop=loop)
+    found = fb.postures(paper, [0.33, -0.25], name, loop=loop)
     values = [one.value for one in found.found]
     assert len(values) == 2
     assert values == sorted(values, reverse=not MEASURES[name].small_is_good)
@@ -101,8 +101,8 @@ def test_a_search_makes_it_best(paper: fb.Plant, name: str) -> None:
 @pytest.mark.parametrize("name", [name for name in MEASURES if name not in CLIMBED])
 def test_a_search_says_why_it_cannot_follow(paper: fb.Plant, name: str) -> None:
     for search in (
-        lambda: fb.best_posture(paper, [0.33, -0.25], name),
-        lambda: fb.best_layout(paper, [[0.33, -0.25]], name),
+        lambda: fb.postures(paper, [0.33, -0.25], name),
+        lambda: fb.layout(paper, [[0.33, -0.25]], name),
     ):
         with pytest.raises(fb.InputError) as caught:
             search()
@@ -113,7 +113,7 @@ def test_a_new_measure_needs_one_line(paper: fb.Plant, monkeypatch: pytest.Monke
     """A throw-away cost with a period, registered here: searches, differences and maps know it."""
     new = MEASURES["alignment"]._replace(name="new", small_is_good=True, period=4.0)
     monkeypatch.setitem(MEASURES, "new", new)
-    found = fb.best_posture(paper, [0.33, -0.25], "new")
+    found = fb.postures(paper, [0.33, -0.25], "new")
     assert [one.value for one in found.found] == sorted(one.value for one in found.found)
     chart = fb.sweep(paper, ["new"], fb.Cells(shape=(5, 5)))
     moved = chart.copy(deep=True)

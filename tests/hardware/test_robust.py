@@ -9,7 +9,7 @@ import flexbase as fb
 from flexbase.model.sensing import Sensing
 from flexbase.sampled.judged import Judged, robots_at
 from flexbase.sampled.verdict import hardware_verdict
-from flexbase.study.workspace import random_poses
+from flexbase.study.random_poses import random_poses
 from flexbase.synthesis import controller_for
 from flexbase.synthesis.methods.robust import STAGES
 from flexbase.synthesis.search.shaping import slow_gain

@@ -17,7 +17,7 @@ from flexbase.model.sensing import Sensing
 from flexbase.sampled.closed import close_loop, sensitivities
 from flexbase.sampled.controller import SampledController
 from flexbase.sampled.verdict import hardware_verdict
-from flexbase.study.workspace import random_poses
+from flexbase.study.random_poses import random_poses
 from flexbase.synthesis import controller_for
 from flexbase.synthesis.methods.sampled import SCALES, SampledProblem, signals
 from flexbase.synthesis.search.minimax import Landscape, descend

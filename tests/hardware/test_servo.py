@@ -12,7 +12,7 @@ from flexbase.model.sensing import Sensing
 from flexbase.plant import Plant
 from flexbase.sampled.closed import close_loop, loop_gain, tip_correction, tip_stiffness
 from flexbase.sampled.controller import SampledController
-from flexbase.study.workspace import random_poses
+from flexbase.study.random_poses import random_poses
 from flexbase.synthesis.search.servo import Slow, joint_servo
 from flexbase.synthesis.search.shaping import Weight
 

@@ -9,7 +9,7 @@ from matplotlib.colors import to_hex
 from matplotlib.patches import PathPatch
 
 import flexbase as fb
-from flexbase.report.maps.curves import runs, zero_crossings
+from flexbase.report.maps.line_curves import runs, zero_crossings
 from flexbase.report.maps.signs import PATTERN, level_paths, outlines, scale_of
 from flexbase.report.plot import plot
 from flexbase.report.style import BLUE

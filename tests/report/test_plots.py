@@ -12,7 +12,7 @@ import pytest
 from matplotlib import image
 
 import flexbase as fb
-from flexbase.report.arm.planar import joint_points
+from flexbase.report.arm.in_plane import joint_points
 from flexbase.report.plot import plot, save_plot
 from flexbase.report.save import METADATA, save_figure
 from flexbase.report.style import new_figure

@@ -14,9 +14,9 @@ from matplotlib import image
 
 import flexbase as fb
 from flexbase.report import paper as panels
-from flexbase.report.maps import workspace
-from flexbase.report.paper import write as reproduction
-from flexbase.report.paper.write import PANELS, reproduce
+from flexbase.report.paper import all_figures as reproduction
+from flexbase.report.paper import ring
+from flexbase.report.paper.all_figures import PANELS, reproduce
 from flexbase.study import paper as study
 
 COARSE = 0.25  # m between ellipses: a third of a minute less than the real spacing
@@ -127,7 +127,7 @@ def test_drawn_robust_configurations_are_robust(paper, charts):
     """
     for name, gain in (("without", None), ("with", charts["exact"])):
         judged = 0
-        for line in workspace.robust_curves(charts[name]):
+        for line in ring.robust_curves(charts[name]):
             radius = np.linalg.norm(line - [0.2, 0.0], axis=1)
             ends = np.linalg.norm(line[:, None] - line[[0, -1]], axis=2).min(axis=1)
             for tip in line[(radius > 0.06) & (radius < 0.54) & (ends > 0.02)][::5]:
@@ -140,7 +140,7 @@ def test_drawn_robust_configurations_are_robust(paper, charts):
 
 def test_the_curve_passes_through_the_work_point_only_with_the_compensator(charts):
     distance = {
-        name: np.linalg.norm(np.vstack(workspace.robust_curves(charts[name])) - [0.33, -0.25], axis=1).min()
+        name: np.linalg.norm(np.vstack(ring.robust_curves(charts[name])) - [0.33, -0.25], axis=1).min()
         for name in ("without", "with")
     }
     assert distance["with"] < 5e-3  # the spacing of the grid

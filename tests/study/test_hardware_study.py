@@ -9,8 +9,8 @@ from scipy.stats import binomtest
 import flexbase as fb
 from flexbase.model.sensing import Sensing
 from flexbase.sampled.verdict import hardware_verdict
+from flexbase.study.random_poses import random_poses
 from flexbase.study.running.hardware_study import Setting, hardware_study, share_interval
-from flexbase.study.workspace import random_poses
 from flexbase.synthesis import controller_for
 
 FAST, SLOW = Setting(4000.0, 1.0), Setting(1000.0, 1.0)

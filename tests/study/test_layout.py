@@ -15,10 +15,10 @@ from flexbase.errors import InputError, Unreachable
 from flexbase.measures import MEASURES
 from flexbase.model.task import ROWS, Task
 from flexbase.plant import Plant
-from flexbase.study.layout.layout import best_layout
+from flexbase.study.layout.best_layout import layout
 from flexbase.study.layout.placement import Placement
 from flexbase.study.layout.targets import read_targets
-from flexbase.study.postures.posture import best_posture
+from flexbase.study.postures.best_postures import postures
 from flexbase.study.robust_configurations.curves import robust_curves
 from flexbase.sweeps.engine.evaluate import Engine
 from flexbase.sweeps.engine.formula import Formula
@@ -49,7 +49,7 @@ def brute_force(plant: Plant, targets: np.ndarray, goal: str, shifts: np.ndarray
 def test_no_shift_on_a_grid_is_better(goal: str, within: float) -> None:
     """241 x 241 shifts. The grid misses the optimum by up to a cell, times slopes of some 20/m."""
     plant = fb.load("ueda2003")
-    found = best_layout(plant, HOLES, goal=goal, within=within)
+    found = layout(plant, HOLES, goal=goal, within=within)
     ticks = np.linspace(-within, within, 241)
     shifts = np.stack(np.meshgrid(ticks, ticks), axis=-1).reshape(-1, 2)
     values = brute_force(plant, HOLES, goal, shifts)
@@ -64,25 +64,25 @@ def test_no_shift_on_a_grid_is_better(goal: str, within: float) -> None:
 def test_before_and_after_are_what_the_modal_analysis_says() -> None:
     """Each target's joints put the tip there, to 1e-9, and have the alignment that is shown, the best there is."""
     plant = fb.load("ueda2003")
-    found = best_layout(plant, HOLES, turn=True)
+    found = layout(plant, HOLES, turn=True)
     for stations in (found.before, found.after):
         for one in stations:
             assert one.joints is not None
             pose = plant.at(one.joints)
             assert pose.tip == pytest.approx(one.tip, abs=1e-9)
             assert fb.modes(pose).modes[0].alignment == pytest.approx(one.value, abs=1e-12)
-            assert one.value == pytest.approx(best_posture(plant, one.tip, "alignment").best.value, abs=1e-9)
+            assert one.value == pytest.approx(postures(plant, one.tip, "alignment").best.value, abs=1e-9)
     assert [one.tip.tolist() for one in found.before] == HOLES.tolist()
     moved = np.array([one.tip for one in found.after])
     turn = np.array([[np.cos(found.turn), -np.sin(found.turn)], [np.sin(found.turn), np.cos(found.turn)]])
     assert moved == pytest.approx((HOLES - found.centre) @ turn.T + found.centre + found.shift, abs=1e-12)
-    straight = best_layout(plant, HOLES)
+    straight = layout(plant, HOLES)
     assert found.score(found.after) >= straight.score(straight.after) - 1e-9
 
 
 def test_a_single_target_lands_on_the_robust_curve() -> None:
     plant = fb.load("ueda2003")
-    found = best_layout(plant, [0.33, -0.25], within=0.2)
+    found = layout(plant, [0.33, -0.25], within=0.2)
     assert found.after[0].value == pytest.approx(1.0, abs=1e-12)
     gaps = [np.linalg.norm(one.tip - found.after[0].tip, axis=1).min() for one in robust_curves(plant).curves]
     assert min(gaps) < 0.005
@@ -90,11 +90,11 @@ def test_a_single_target_lands_on_the_robust_curve() -> None:
 
 @pytest.mark.slow
 def test_a_redundant_arm_gains_with_every_target_on_its_best_posture() -> None:
-    """UR5e, three targets, moves up to 0.1 m: the worst gains, and no posture of `best_posture` there is better by more
+    """UR5e, three targets, moves up to 0.1 m: the worst gains, and no posture of `postures` there is better by more
     than 1e-6."""
     plant = fb.load("ur5e-pedestal")
     targets = [[0.5, 0.2, 1.0], [0.6, 0.0, 1.0], [0.5, -0.2, 1.1]]
-    found = best_layout(plant, targets, within=0.1)
+    found = layout(plant, targets, within=0.1)
     before, after = found.score(found.before), found.score(found.after)
     assert before is not None
     assert after is not None
@@ -103,19 +103,19 @@ def test_a_redundant_arm_gains_with_every_target_on_its_best_posture() -> None:
         assert one.joints is not None
         assert plant.at(one.joints).tip == pytest.approx(one.tip, abs=1e-9)
     worst = min(found.after, key=lambda one: one.value)
-    assert worst.value >= best_posture(plant, worst.tip, "alignment").best.value - 1e-6
+    assert worst.value >= postures(plant, worst.tip, "alignment").best.value - 1e-6
 
 
 def test_targets_that_stay_out_of_reach_are_named() -> None:
     plant = fb.load("ueda2003")
-    found = best_layout(plant, [[0.33, -0.25], [0.4, 0.0], [3.0, 0.0]])
+    found = layout(plant, [[0.33, -0.25], [0.4, 0.0], [3.0, 0.0]])
     assert found.unreachable == ("3",)
     assert found.after[2].joints is None
     assert "out of reach" in found.summary()
     assert found.to_dict()["unreachable"] == ["3"]
     with pytest.raises(Unreachable, match="none is reached"):
-        best_layout(plant, [[3.0, 0.0]], within=0.1)
-    brought = best_layout(plant, [[1.2, 0.0], [1.3, 0.1]])
+        layout(plant, [[3.0, 0.0]], within=0.1)
+    brought = layout(plant, [[1.2, 0.0], [1.3, 0.1]])
     assert brought.before[0].value is None
     assert brought.unreachable == ()
 
@@ -144,7 +144,7 @@ def test_full_poses_turn_with_the_work() -> None:
     plant = Plant(dataclasses.replace(arm, task=Task(ROWS), gains=None))
     joints = np.array([[0.3, -1.2, 1.4, -1.5, -1.4, 0.2], [0.6, -1.0, 1.6, -1.3, -1.1, 0.4]])
     targets = np.array([plant.at(row).tip for row in joints])
-    found = best_layout(plant, targets, within=0.05, turn=True)
+    found = layout(plant, targets, within=0.05, turn=True)
     turn = Rotation.from_rotvec([0.0, 0.0, found.turn])
     for one, target in zip(found.after, targets, strict=True):
         assert one.joints is not None
@@ -186,10 +186,8 @@ def test_questions_without_meaning_are_refused() -> None:
         ({"branch": "+-+"}, "has no meaning here"),
     ):
         with pytest.raises(InputError, match=words):
-            best_layout(plant, HOLES, **options)
+            layout(plant, HOLES, **options)
     with pytest.raises(InputError, match="targets: shape"):
-        best_layout(plant, [[1.0, 2.0, 3.0]])
+        layout(plant, [[1.0, 2.0, 3.0]])
     with pytest.raises(InputError, match="turn: a task of x z"):
-        best_layout(
-            Plant(dataclasses.replace(fb.load("ur5e-pedestal").arm, task=Task(("x", "z")))), [[0.4, 1.0]], turn=True
-        )
+        layout(Plant(dataclasses.replace(fb.load("ur5e-pedestal").arm, task=Task(("x", "z")))), [[0.4, 1.0]], turn=True)

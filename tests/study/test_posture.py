@@ -14,8 +14,8 @@ from flexbase.linear.reduced import robustness
 from flexbase.measures import MEASURES
 from flexbase.model.task import ROWS, Task
 from flexbase.plant import Plant
+from flexbase.study.postures.best_postures import postures
 from flexbase.study.postures.objective import make_objective
-from flexbase.study.postures.posture import best_posture
 from flexbase.sweeps.cells.parameters import configuration_of
 from flexbase.sweeps.engine.evaluate import Engine
 from flexbase.sweeps.engine.formula import Formula
@@ -57,7 +57,7 @@ def self_motion(plant: Plant, target: np.ndarray, count: int = 20001) -> np.ndar
 def test_no_sampled_posture_is_better(m: int, measure: str, target: list[float]) -> None:
     """The self-motion in steps of 3e-4 rad: misses a smooth optimum by 1e-6 of the spread, one at a kink by 1e-3."""
     plant = planar(THREE[m], m=m, damping=0.0)
-    found = best_posture(plant, target, measure)
+    found = postures(plant, target, measure)
     rows = self_motion(plant, np.array(target))
     assert plant.at(rows[7]).tip == pytest.approx(target, abs=1e-12)
     values = (
@@ -79,7 +79,7 @@ def test_no_sampled_posture_is_better(m: int, measure: str, target: list[float])
 def test_no_random_posture_is_better(robot: str, tip: list[float]) -> None:
     """2000 random starts brought to the target; the value is that of the modal analysis, to 1e-9 of it."""
     plant = fb.load(robot)
-    found = best_posture(plant, tip)
+    found = postures(plant, tip)
     problem = TipProblem(plant.arm.mechanism, plant.arm.task, plant.arm.base.equilibrium)
     starts = np.random.default_rng(3).uniform(-np.pi, np.pi, (2000, plant.arm.n))
     rows, errors = solve_rows(problem, starts, np.array(tip))
@@ -97,7 +97,7 @@ def test_optimum_at_a_kink_is_exact() -> None:
     """UR5e: at the best posture both modes are worth the same, to 1e-9, and no direction of the self-motion improves
     both: the gradients along it point against each other, with a resultant below 1e-6 for some convex combination."""
     plant = fb.load("ur5e-pedestal")
-    found = best_posture(plant, [0.4, 0.2, 1.0])
+    found = postures(plant, [0.4, 0.2, 1.0])
     one, other = found.best.modes
     assert one == pytest.approx(other, rel=1e-9)
     _, slopes = make_objective(plant, "robustness", None)(found.best.joints[None])
@@ -144,7 +144,7 @@ def test_gradient_against_complex_steps() -> None:
 def test_all_branches_of_two_links_are_compared() -> None:
     """The paper's pose and its mirror: values of the modal analysis, and of `at_tip` on each branch."""
     plant = fb.load("ueda2003")
-    found = best_posture(plant, [0.33, -0.25])
+    found = postures(plant, [0.33, -0.25])
     assert [one.branch for one in found.found] == ["-", "+"]
     for one in found.found:
         pose = plant.at_tip([0.33, -0.25], one.branch)
@@ -152,8 +152,8 @@ def test_all_branches_of_two_links_are_compared() -> None:
         assert one.value == pytest.approx(by_modes(pose, "robustness"), rel=1e-9)
     assert found.usual is not None
     assert found.usual.value == found.found[1].value
-    assert best_posture(plant, [0.33, -0.25], branch="+").best.branch == "+"
-    costs = [one.value for one in best_posture(plant, [0.33, -0.25], "exact_gain").found]
+    assert postures(plant, [0.33, -0.25], branch="+").best.branch == "+"
+    costs = [one.value for one in postures(plant, [0.33, -0.25], "exact_gain").found]
     assert costs == sorted(costs)
     assert "0.0019" in found.summary()
 
@@ -163,20 +163,20 @@ def test_all_eight_branches_of_a_full_pose_are_compared() -> None:
     arm = fb.load("ur5e-pedestal").arm
     plant = Plant(dataclasses.replace(arm, task=Task(ROWS), gains=None))
     tip = plant.at([0.3, -1.2, 1.4, -1.5, -1.4, 0.2]).tip
-    found = best_posture(plant, tip, "alignment")
+    found = postures(plant, tip, "alignment")
     assert sorted(one.branch for one in found.found) == sorted(one.branch for one in plant.solutions(tip))
     values = [by_modes(plant.at_tip(tip, one.branch), "alignment") for one in found.found]
     assert [one.value for one in found.found] == pytest.approx(values, abs=1e-6)  # damping of 1 % bends the shapes
     assert values == sorted(values, reverse=True)
     assert len(values) == 8
-    assert [one.branch[1] for one in best_posture(plant, tip, "alignment", branch="-").found] == ["-"] * 4
+    assert [one.branch[1] for one in postures(plant, tip, "alignment", branch="-").found] == ["-"] * 4
 
 
 def test_a_compensator_is_used() -> None:
     """On the exact design's own branch the worst mode is at zero; on the other it is not."""
     plant = fb.load("ueda2003")
     E = fb.design(plant.at_tip([0.33, -0.25]), method="exact", natural_frequency=346.8)
-    found = best_posture(plant, [0.33, -0.25], loop=E)
+    found = postures(plant, [0.33, -0.25], loop=E)
     assert (found.best.branch, found.compensated) == ("+", True)
     assert found.best.value == pytest.approx(0.0, abs=1e-12)
 
@@ -185,7 +185,7 @@ def test_gravity_sags_the_base_and_the_tip_stays() -> None:
     """With gravity the tip of the pose is on the target, to 1e-9, and the warning says what values leave out."""
     plant = planar(THREE[1], gravity=(0.0, -9.81, 0.0))
     with pytest.warns(fb.FlexbaseWarning, match="gravity"):
-        found = best_posture(plant, [0.55, 0.2])
+        found = postures(plant, [0.55, 0.2])
     assert found.best.pose.tip == pytest.approx([0.55, 0.2], abs=1e-9)
     assert abs(found.best.pose.q[0]) > 1e-5
 
@@ -193,9 +193,9 @@ def test_gravity_sags_the_base_and_the_tip_stays() -> None:
 @pytest.mark.parametrize("branch", [None, "+"])
 def test_out_of_reach(branch: str | None) -> None:
     with pytest.raises(Unreachable, match=r"tip: \[2\.0, 0\.0\] is reached by .* in no posture"):
-        best_posture(fb.load("ueda2003"), [2.0, 0.0], branch=branch)
+        postures(fb.load("ueda2003"), [2.0, 0.0], branch=branch)
     with pytest.raises(Unreachable):
-        best_posture(planar(THREE[1]), [2.0, 0.0], branch=branch)
+        postures(planar(THREE[1]), [2.0, 0.0], branch=branch)
 
 
 @pytest.mark.parametrize(
@@ -209,4 +209,4 @@ def test_out_of_reach(branch: str | None) -> None:
 )
 def test_measures_that_cannot_be_climbed_are_named(measure: str, words: str) -> None:
     with pytest.raises(InputError, match=words):
-        best_posture(fb.load("ueda2003"), [0.33, -0.25], measure)
+        postures(fb.load("ueda2003"), [0.33, -0.25], measure)

@@ -6,11 +6,11 @@ from flexbase.measures import (
     compensability,
     exact_design,
     frequency,
-    loop,
     manipulability,
     passivity_shortage,
     robustness,
     shortage,
+    task_loop,
     turn,
 )
 from flexbase.measures.registry import MEASURES, Configuration, Measure
@@ -24,10 +24,10 @@ __all__ = [
     "compensability",
     "exact_design",
     "frequency",
-    "loop",
     "manipulability",
     "passivity_shortage",
     "robustness",
     "shortage",
+    "task_loop",
     "turn",
 ]

@@ -31,9 +31,9 @@ from flexbase.report.maps.sweep import draw_chart, draw_dataset
 from flexbase.report.save import check_picture_path, save_figure
 from flexbase.report.style import styled
 from flexbase.simulation import Run, SampledRun
-from flexbase.study.layout.layout import Layout
+from flexbase.study.layout.best_layout import Layout
 from flexbase.study.montecarlo import MonteCarlo, is_study
-from flexbase.study.postures.posture import Postures
+from flexbase.study.postures.best_postures import Postures
 from flexbase.study.robust_configurations.curves import RobustCurves
 from flexbase.study.robust_configurations.points import RobustPoints
 from flexbase.study.running.region import Region

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -57,3 +58,8 @@ def styled() -> Iterator[None]:
 def new_figure(width: float = 5.0, height: float = 3.6) -> Figure:
     """An empty figure of a size [inch], belonging to no window and no global state."""
     return Figure(figsize=(width, height), layout="constrained")
+
+
+def in_mathtext(unit: str) -> str:
+    """A unit with its powers raised: m/(N s^2)."""
+    return re.sub(r"\^(-?\w+)", r"$^{\1}$", unit)

@@ -17,7 +17,7 @@ from flexbase.cli.terminal.moved import moved
 from flexbase.cli.terminal.out import Out, check_out, write_out, written
 from flexbase.cli.terminal.show import put
 from flexbase.plant import load
-from flexbase.study.layout.layout import best_layout
+from flexbase.study.layout.best_layout import layout as layout_of
 from flexbase.study.layout.targets import read_targets
 
 app = App(
@@ -54,9 +54,7 @@ def layout(
     plant = load(robot)
     used = compensator_of(plant, compensator)
     given = read_targets(plant.arm.task, targets)
-    found = best_layout(
-        plant, given, measure, goal=goal, along=along, turn=turn, within=within, branch=elbow, loop=used
-    )
+    found = layout_of(plant, given, measure, goal=goal, along=along, turn=turn, within=within, branch=elbow, loop=used)
     content = found.to_dict()
     write_out(out, "layout", found, content)
     put(document("layout", content)) if json else put(*moved(found), *written(out))

@@ -17,8 +17,8 @@ from flexbase.cli.terminal.show import facts, put, table, title
 from flexbase.errors import InputError
 from flexbase.plant import load
 from flexbase.sheets.numbers import listed, number
+from flexbase.study.postures.best_postures import Posture, Postures, postures
 from flexbase.study.postures.objective import climbable
-from flexbase.study.postures.posture import Posture, Postures, best_posture
 
 app = App(
     name="posture",
@@ -52,7 +52,7 @@ def posture(
     plant = load(robot)
     used = compensator_of(plant, compensator)
     with blaming("--tip"):
-        found = best_posture(plant, tip, measure, branch=elbow, loop=used)
+        found = postures(plant, tip, measure, branch=elbow, loop=used)
     content = found.to_dict()
     write_out(out, "posture", found, content)
     put(document("posture", content)) if json else put(*_tables(found), *written(out))

@@ -28,7 +28,7 @@ Folder = Annotated[Path, Parameter(name=["--out", "-o"], metavar="FOLDER", help=
 @app.default
 def reproduce(*, out: Folder = Path("out/paper"), json: Json = False) -> None:
     """Make every figure and number of the paper, and compare."""
-    from flexbase.report.paper.write import reproduce as reproduce_paper
+    from flexbase.report.paper.all_figures import reproduce as reproduce_paper
 
     with progress_bar(plain_lines=True) as report:
         found = reproduce_paper(out, report)

@@ -6,7 +6,7 @@ from rich.console import RenderableType
 
 from flexbase.cli.terminal.show import facts, table, title, verdict
 from flexbase.sheets.numbers import number
-from flexbase.study.layout.layout import Layout
+from flexbase.study.layout.best_layout import Layout
 
 
 def moved(found: Layout) -> list[RenderableType]:

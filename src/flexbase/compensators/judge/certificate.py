@@ -7,7 +7,7 @@ import numpy as np
 from flexbase.cautions import caution
 from flexbase.checks import Array, check_symmetric, finite_array, is_definite
 from flexbase.compensators.judge.lag_law import lag_limit
-from flexbase.compensators.judge.statement import statement
+from flexbase.compensators.judge.why_positive_real import statement
 from flexbase.control.compensator import Certificate, Compensator
 from flexbase.errors import Infeasible
 from flexbase.linear.linearise import is_reducible, modified_inertia

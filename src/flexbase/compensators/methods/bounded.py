@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from flexbase.checks import Array
-from flexbase.compensators.choice import least_lacking
 from flexbase.compensators.judge.certificate import certify
+from flexbase.compensators.judge.gain_shortage import cautions_of_shortage, target_residual
 from flexbase.compensators.judge.implementable import RADIUS, BoundedGain, checked_radius
-from flexbase.compensators.judge.shortage import cautions_of_shortage, target_residual
+from flexbase.compensators.judge.least_lacking import least_lacking
 from flexbase.compensators.options import Radius, Seed
 from flexbase.compensators.registry import method
 from flexbase.compensators.search.descent import descend, shortage_and_slope

@@ -13,13 +13,13 @@ from typing import Annotated
 import numpy as np
 
 from flexbase.checks import Array, positive_number
-from flexbase.compensators.choice import PARTS, check_no_worse, least_lacking
 from flexbase.compensators.judge.certificate import certify
+from flexbase.compensators.judge.gain_shortage import cautions_of_shortage, target_residual
 from flexbase.compensators.judge.implementable import RADIUS, checked_radius
 from flexbase.compensators.judge.lag_law import SHARE as SHARE_OF_DAMPING
 from flexbase.compensators.judge.lag_law import LagLaw, check_obeyed, checked_law, obeys
+from flexbase.compensators.judge.least_lacking import PARTS, check_no_worse, least_lacking
 from flexbase.compensators.judge.refusals import aligned, aligned_each, check_frequencies, what_binds
-from flexbase.compensators.judge.shortage import cautions_of_shortage, target_residual
 from flexbase.compensators.options import Lag, LagShare, Radius
 from flexbase.compensators.registry import method
 from flexbase.compensators.search.descent import descend, shortage_and_slope

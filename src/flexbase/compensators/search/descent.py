@@ -6,8 +6,8 @@ import numpy as np
 from scipy.optimize import minimize
 
 from flexbase.checks import Array
+from flexbase.compensators.judge.gain_shortage import modal_shortage, working_damping
 from flexbase.compensators.judge.implementable import BoundedGain
-from flexbase.compensators.judge.shortage import modal_shortage, working_damping
 from flexbase.compensators.search.mode_parameters import symmetric, upper_triangle
 from flexbase.linear.linearise import reduced_arrays
 from flexbase.plant import Pose

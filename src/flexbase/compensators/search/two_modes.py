@@ -14,8 +14,8 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from flexbase.checks import Array
+from flexbase.compensators.judge.gain_shortage import working_damping
 from flexbase.compensators.judge.lag_law import LagLaw
-from flexbase.compensators.judge.shortage import working_damping
 from flexbase.compensators.search.mobility_program import (
     FAR,
     REACHED,

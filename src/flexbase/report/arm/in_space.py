@@ -8,7 +8,7 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D
 from flexbase.checks import Array
 from flexbase.model.parts import Parts
 from flexbase.plant import Pose
-from flexbase.report.arm.planar import AXES, base_and_arm, joint_points
+from flexbase.report.arm.in_plane import AXES, base_and_arm, joint_points
 from flexbase.report.style import GREY, INK, ORANGE
 
 FLAT = 0.02  # extent out of its plane, of the largest, up to which an arm is drawn in the plane

@@ -8,7 +8,7 @@ from matplotlib.lines import Line2D
 from flexbase.checks import Array
 from flexbase.linear.modal import Mode, Modes
 from flexbase.plant import Pose
-from flexbase.report.arm.planar import joint_points
+from flexbase.report.arm.in_plane import joint_points
 from flexbase.report.style import BLUE, GREEN, INK, RED
 
 SWING = 0.12  # of the arm's extent: the largest drawn displacement

@@ -9,9 +9,9 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 from flexbase.checks import Array
 from flexbase.linear.modal import Mode, Modes
+from flexbase.report.arm.in_plane import joint_points
 from flexbase.report.arm.in_space import arrow_in_space, draw_arm_in_space, draw_base_joints, dress_in_space
 from flexbase.report.arm.mode_signs import MOST, arrows, headline, rigid_headline, signs, swung
-from flexbase.report.arm.planar import joint_points
 from flexbase.report.style import BLUE, GREEN, ORANGE, RED, SKY, new_figure
 
 MARK = 0.2  # of the arm's extent: the drawn size of a base joint's axis

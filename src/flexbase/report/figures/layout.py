@@ -8,10 +8,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from flexbase.checks import Array
-from flexbase.report.arm.planar import AXES, draw_arm, joint_points
-from flexbase.report.style import BLUE, GREY, INK, RED, SKY, new_figure
-from flexbase.report.words import in_mathtext
-from flexbase.study.layout.layout import Layout, Station
+from flexbase.report.arm.in_plane import AXES, draw_arm, joint_points
+from flexbase.report.style import BLUE, GREY, INK, RED, SKY, in_mathtext, new_figure
+from flexbase.study.layout.best_layout import Layout, Station
 from flexbase.study.robust_configurations.curves import robust_curves
 
 

@@ -8,10 +8,10 @@ from matplotlib.lines import Line2D
 
 from flexbase.checks import Array
 from flexbase.linear.modal import Mode, Modes
+from flexbase.report.arm.in_plane import AXES, draw_arm, drawing_plane, joint_points
 from flexbase.report.arm.in_space import leaves_plane
 from flexbase.report.arm.mode_signs import MOST, arrows, headline, rigid_headline, signs, swung
 from flexbase.report.arm.modes_in_space import modes_in_space
-from flexbase.report.arm.planar import AXES, draw_arm, drawing_plane, joint_points
 from flexbase.report.style import BLUE, GREEN, RED, SKY, new_figure
 
 

@@ -8,11 +8,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import NullFormatter
 
+from flexbase.report.arm.in_plane import AXES, draw_arm, drawing_plane, joint_points
 from flexbase.report.arm.in_space import draw_arm_in_space, draw_base_joints, dress_in_space, leaves_plane
-from flexbase.report.arm.planar import AXES, draw_arm, drawing_plane, joint_points
-from flexbase.report.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, RED, SKY, new_figure
-from flexbase.report.words import in_mathtext
-from flexbase.study.postures.posture import Posture, Postures
+from flexbase.report.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, RED, SKY, in_mathtext, new_figure
+from flexbase.study.postures.best_postures import Posture, Postures
 
 MOST = 10  # postures with a row of their own
 COLORS = (BLUE, RED, GREEN, ORANGE, PURPLE, SKY)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from flexbase.report.arm.planar import AXES
+from flexbase.report.arm.in_plane import AXES
 from flexbase.report.style import BLUE, new_figure
 from flexbase.study.robust_configurations.points import RobustPoints
 

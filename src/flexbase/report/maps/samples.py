@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from flexbase.report.maps.chart import labelled, named, titled
+from flexbase.report.maps.plane_maps import labelled, named, titled
 from flexbase.report.maps.signs import Scale, scale_of
 from flexbase.report.style import BLUE, GREY, HATCH, PALE, SKY, new_figure
 from flexbase.sweeps.answers.chart import Chart, Layer

@@ -6,8 +6,8 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from flexbase.report.maps.chart import draw_plane, draw_slices
-from flexbase.report.maps.curves import draw_curves
+from flexbase.report.maps.line_curves import draw_curves
+from flexbase.report.maps.plane_maps import draw_plane, draw_slices
 from flexbase.report.maps.samples import draw_samples
 from flexbase.sweeps.answers.chart import Chart, chart_of
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from flexbase.report.maps.curves import COLOURS, runs, zero_crossings
+from flexbase.report.maps.line_curves import COLOURS, runs, zero_crossings
 from flexbase.report.maps.samples import BINS, middle, missing_words
 from flexbase.report.maps.signs import scale_of
 from flexbase.report.page.planes import Panel

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from flexbase.report.maps.chart import empty_words
+from flexbase.report.maps.plane_maps import empty_words
 from flexbase.report.maps.signs import Scale, scale_of
 from flexbase.report.page.traces import (
     colorscale,

@@ -1,10 +1,10 @@
 """The eleven panels of the paper, a file for each kind: study result -> Figure."""
 
-from flexbase.report.paper.configuration import configuration
-from flexbase.report.paper.ellipses import ellipses
-from flexbase.report.paper.iterations import CURVES, Curve, exact_value, iteration_curve
-from flexbase.report.paper.maps import contours, surface
-from flexbase.report.paper.settling import positioning_error
+from flexbase.report.paper.fig05_arm import configuration
+from flexbase.report.paper.fig06_fig08_maps import contours, surface
+from flexbase.report.paper.fig07_iterations import CURVES, Curve, exact_value, iteration_curve
+from flexbase.report.paper.fig09_settling import positioning_error
+from flexbase.report.paper.fig10_ellipses import ellipses
 
 __all__ = [
     "CURVES",

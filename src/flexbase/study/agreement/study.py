@@ -20,7 +20,7 @@ from flexbase.study.agreement import move as agreement_move
 from flexbase.study.agreement import nudge as agreement_nudge
 from flexbase.study.agreement.case import Case, Outcome, draw_case
 from flexbase.study.agreement.nudge import NEAR
-from flexbase.study.workspace import random_poses
+from flexbase.study.random_poses import random_poses
 from flexbase.sweeps.engine.pool import Mapper, mapping
 from flexbase.synthesis import HARDWARE_METHODS
 

@@ -9,7 +9,7 @@ from flexbase.dynamics.inverse.branches import inside_branch
 from flexbase.dynamics.inverse.newton import TipProblem
 from flexbase.dynamics.inverse.two_joint_arm import two_joint_arm
 from flexbase.study.layout.placement import Placement
-from flexbase.study.layout.standing import Standing, better_of, stand
+from flexbase.study.layout.postures_on_targets import Standing, better_of, stand
 from flexbase.study.postures.epigraph import WORST, ascend
 from flexbase.study.postures.objective import Objective
 

@@ -21,7 +21,7 @@ from flexbase.sheets.plain import Plain
 from flexbase.sheets.sheet import Column, Note, Sheet, make_sheet, table, words
 from flexbase.sheets.told import Told
 from flexbase.study.montecarlo.interval import probability_interval
-from flexbase.study.workspace import random_poses
+from flexbase.study.random_poses import random_poses
 from flexbase.sweeps.engine.pool import in_processes
 from flexbase.synthesis import HARDWARE_METHODS
 

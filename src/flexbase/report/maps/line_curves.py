@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from flexbase.checks import Array
-from flexbase.report.maps.chart import finish, labelled, raised
+from flexbase.report.maps.plane_maps import finish, labelled, raised
 from flexbase.report.maps.signs import PATTERN, UNKNOWN, face
 from flexbase.report.style import BLUE, GREEN, GREY, HATCH, ORANGE, PURPLE, RED, SKY, new_figure
 from flexbase.sweeps.answers.chart import Chart, Layer

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
-from flexbase.report.maps import workspace
+from flexbase.report.paper import ring
 from flexbase.report.style import BLUE, RED, new_figure, styled
 from flexbase.study.paper import Shaping
 
@@ -22,7 +22,7 @@ class Curve(NamedTuple):
 
 
 CURVES = {
-    "fig07a": Curve("robustness", f"$w_1$ [{workspace.UNIT}]", (-0.1, 0.05), 4),
+    "fig07a": Curve("robustness", f"$w_1$ [{ring.UNIT}]", (-0.1, 0.05), 4),
     "fig07b": Curve("min_eig_modified_inertia", r"$\lambda_{\min}$(M − E) [kg m$^2$]", (0.06, 0.07), 6),
     "fig07c": Curve("frequency_rad_s", r"$\omega_1$ [rad/s]", (250.0, 350.0), 5),
 }

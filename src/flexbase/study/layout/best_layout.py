@@ -16,8 +16,8 @@ from flexbase.model.loop import Asked
 from flexbase.model.task import check_branch
 from flexbase.plant import Plant
 from flexbase.study.layout.placement import make_placement
+from flexbase.study.layout.postures_on_targets import Standing, branches_of, stand
 from flexbase.study.layout.search import best_place
-from flexbase.study.layout.standing import Standing, branches_of, stand
 from flexbase.study.layout.targets import Targets, make_targets
 from flexbase.study.postures.epigraph import GOALS, WORST
 from flexbase.study.postures.objective import Objective, make_objective
@@ -51,7 +51,7 @@ class Station:
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """A set of targets, and a better place for it. Made by `best_layout`.
+    """A set of targets, and a better place for it. Made by `layout`.
 
     along, shift : the axes, and how far the work moves along each [m]
     turn : of the work about the vertical through `centre` [rad], before it moves; 0 where it was not asked for
@@ -113,7 +113,7 @@ class Layout:
         return "\n".join([*lines, *(f"  {a.name}: {_said(a.value)} -> {_said(b.value)}" for a, b in pairs)])
 
 
-def best_layout(
+def layout(
     plant: Plant,
     targets: ArrayLike | Targets,
     measure: str = "alignment",
@@ -133,7 +133,7 @@ def best_layout(
     shift is moving the arm with its base by the opposite.
 
     targets : rows of task values, shape (T, k) [m, rad], or `read_targets(...)`
-    measure : as in `best_posture`; alignment is 1 on the robust arm configurations
+    measure : as in `postures`; alignment is 1 on the robust arm configurations
     along : task rows among x y z along which the work may move; all if left out
     turn : whether it may also turn about the vertical through its middle
     within : largest shift along each axis [m]; the arm's reach if left out

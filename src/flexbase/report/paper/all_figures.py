@@ -8,8 +8,8 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from flexbase.report import numbers
 from flexbase.report import paper as panels
+from flexbase.report.paper import numbers_behind as numbers
 from flexbase.report.save import make_folder, save_csv, save_figure, save_text
 from flexbase.study.paper import (
     PaperTable,

@@ -12,9 +12,9 @@ from flexbase.simulation import Run
 from flexbase.study.paper import ellipses, printed
 from flexbase.study.paper.ellipses import EllipseCell, EllipseField
 from flexbase.study.paper.example import TARGET_FREQUENCY, Example
-from flexbase.study.paper.settling import Settling
-from flexbase.study.paper.shaping import Shaping
 from flexbase.study.paper.table import PaperRow, PaperTable
+from flexbase.study.paper.two_designs import Shaping
+from flexbase.study.paper.two_moves import Settling
 
 NOT_UNIQUE = "E is not unique: three entries, two targets; the paper's rounded E lies near our family of solutions."
 MISPRINT = "The paper's second row does not follow from its own targets, which give a symmetric matrix."

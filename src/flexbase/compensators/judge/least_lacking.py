@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from flexbase.checks import Array
-from flexbase.compensators.judge.shortage import relative_shortage
+from flexbase.compensators.judge.gain_shortage import relative_shortage
 from flexbase.errors import Infeasible
 from flexbase.plant import Pose
 

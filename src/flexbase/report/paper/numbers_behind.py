@@ -9,7 +9,7 @@ import numpy as np
 
 from flexbase.measures.manipulability import Manipulability
 from flexbase.report import paper as panels
-from flexbase.report.arm.planar import joint_points
+from flexbase.report.arm.in_plane import joint_points
 from flexbase.simulation import Run
 from flexbase.study.paper import EllipseCell, EllipseField, Example, RobustnessMap, Shaping
 from flexbase.sweeps import STATUS

@@ -11,7 +11,7 @@ import numpy as np
 import scipy.linalg
 
 from flexbase.checks import Array
-from flexbase.compensators.judge.shortage import POSITIVE_REAL, relative_shortage
+from flexbase.compensators.judge.gain_shortage import POSITIVE_REAL, relative_shortage
 from flexbase.linear.linearise import ReducedArrays, is_reducible, reduced_arrays
 from flexbase.plant import Pose
 

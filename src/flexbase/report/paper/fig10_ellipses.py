@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Polygon
 
 from flexbase.checks import Array
-from flexbase.report.maps import workspace
+from flexbase.report.paper import ring
 from flexbase.report.style import BLUE, INK, RED, new_figure, styled
 from flexbase.study.paper import EllipseField, RobustnessMap
 from flexbase.study.paper.ellipses import RAISE, REACHED, SPACING
@@ -24,14 +24,14 @@ def ellipses(field: EllipseField, chart: RobustnessMap) -> Figure:
     """Fig. 10: manipulability ellipses without and with a compensator, over the contours of w_1 without."""
     figure = new_figure(6.6, 6.6)
     ax = figure.add_subplot()
-    workspace.draw_unreachable(ax, chart)
+    ring.draw_unreachable(ax, chart)
     levels = np.arange(-9, 0) * 0.05
     ax.contourf(
         chart.x, chart.y, chart.robustness, levels=[*levels, 0.0], colors=_tints(len(levels)), zorder=1, extend="min"
     )
-    workspace.draw_lines(ax, chart, chart.robustness, levels.tolist(), (-0.05, -0.10), LABELS_ELLIPSES, RED)
-    workspace.draw_robust(ax, chart)
-    workspace.draw_edges(ax, chart)
+    ring.draw_lines(ax, chart, chart.robustness, levels.tolist(), (-0.05, -0.10), LABELS_ELLIPSES, RED)
+    ring.draw_robust(ax, chart)
+    ring.draw_edges(ax, chart)
     for cell in field.cells:
         place = np.array(cell.tip)
         ax.plot(
@@ -54,7 +54,7 @@ def ellipses(field: EllipseField, chart: RobustnessMap) -> Figure:
         ax.add_patch(outline)
         outline.set_clip_path(Circle(cell.tip, 0.5 * SPACING, transform=ax.transData))
     _scale_bar(ax, (-0.36, -0.56), ELLIPSE_SCALE * 1.0, "1 kg$^{-1}$")
-    workspace.dress(ax)
+    ring.dress(ax)
     figure.legend(handles=_ellipse_legend(field), loc="outside lower center", ncols=2)
     return figure
 
@@ -65,7 +65,7 @@ def _ellipse_legend(field: EllipseField) -> list[Line2D]:
         Line2D([], [], color=INK, linewidth=0.8, linestyle=(0, (3, 1.5)), label="original ellipse, |f| ≤ 1 N"),
         Line2D([], [], color=BLUE, linewidth=2.0, label="robust arm configuration, $w_1 = 0$"),
         Line2D([], [], color=INK, linewidth=1.2, label="modified ellipse (long ones cut off)"),
-        Line2D([], [], color=RED, linewidth=0.7, label=f"$w_1$ without compensator, every 0.05 {workspace.UNIT}"),
+        Line2D([], [], color=RED, linewidth=0.7, label=f"$w_1$ without compensator, every 0.05 {ring.UNIT}"),
         Line2D(
             [],
             [],
@@ -80,7 +80,7 @@ def _ellipse_legend(field: EllipseField) -> list[Line2D]:
 
 
 def _tints(count: int) -> Array:
-    cmap, _ = workspace.colours()
+    cmap, _ = ring.colours()
     return np.asarray(cmap(np.linspace(0.45, 1.0, count + 1)))
 
 

@@ -14,7 +14,7 @@ SCALES = np.logspace(-4.0, 4.0, 33)  # of the gains: where a change of stability
 HALVINGS = 12  # of the interval in which it lies, a factor 1.8 wide: to 1.5e-4 relative
 
 
-class Loop(NamedTuple):
+class TaskLoop(NamedTuple):
     """P(s) = R0/s^2 - U (S s^2 + Dp s + Kp)^-1 V^T of every configuration, shapes (..., rows, columns).  [theory §3]"""
 
     R0: Array
@@ -42,14 +42,14 @@ class Loop(NamedTuple):
         return np.asarray(np.linalg.eigvals(A).real.max(axis=-1))
 
 
-def _loop(configuration: Configuration) -> tuple[Loop, Array, Array]:
+def _loop(configuration: Configuration) -> tuple[TaskLoop, Array, Array]:
     gains, reduced = configuration.gains, configuration.reduced
     assert gains is not None  # `needs_gains` asks for them before any cell is evaluated
     parts = [stack(part) for part in (reduced.R0, reduced.U, reduced.V, reduced.S)]
     parts += [stack(configuration.damping), stack(configuration.stiffness)]
     batch = np.broadcast_shapes(*(part.shape[:-2] for part in parts))
     wide = [np.broadcast_to(part, (*batch, *part.shape[-2:])) for part in parts]
-    return Loop(*wide), np.asarray(gains.stiffness), np.asarray(gains.damping)
+    return TaskLoop(*wide), np.asarray(gains.stiffness), np.asarray(gains.damping)
 
 
 @measure(

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from flexbase.report.arm.planar import draw_arm, draw_ground, draw_twist, joint_points
+from flexbase.report.arm.in_plane import draw_arm, draw_ground, draw_twist, joint_points
 from flexbase.report.style import BLUE, GREY, INK, ORANGE, new_figure, styled
 from flexbase.study.paper import DESIGN_TIP, Example
 

@@ -56,7 +56,7 @@ class Posture:
 
 @dataclass(frozen=True, eq=False)
 class Postures:
-    """The best posture for a target, and what else there is. Made by `best_posture`.
+    """The best posture for a target, and what else there is. Made by `postures`.
 
     found : best first; all solutions of an arm with n = k, the distinct local optima of a redundant one
     usual : the posture that `plant.at_tip` takes unasked, or None where that is singular
@@ -95,7 +95,7 @@ class Postures:
         return "\n".join(lines + ([f"  unasked: {self.usual.value:.6g}{unit}"] if self.usual else []))
 
 
-def best_posture(
+def postures(
     plant: Plant,
     target: Any,
     measure: str = "robustness",
