@@ -53,12 +53,14 @@ from flexbase.study.robust_configurations.curves import RobustCurves, robust_cur
 from flexbase.study.robust_configurations.points import RobustPoints, robust_points
 from flexbase.study.running.as_it_runs import AsItRuns, as_it_runs
 from flexbase.study.running.comparison import Comparison, compare
-from flexbase.study.running.hardware_map import hardware_map, hardware_path
+from flexbase.study.running.hardware_map import hardware_map
+from flexbase.study.running.hardware_path import HardwarePath, hardware_path
 from flexbase.study.running.hardware_study import HardwareStudy, Setting, hardware_study
 from flexbase.study.running.recommend import Recommendation, recommend
 from flexbase.study.running.region import Region, region
 from flexbase.study.running.safe_gain import SafeGain, safe_gain
-from flexbase.sweeps import Cells, Execution, difference, open_dataset, save_csv, save_netcdf, summary, sweep
+from flexbase.study.telling import sheet, summary
+from flexbase.sweeps import Cells, Execution, difference, open_dataset, save_csv, save_netcdf, sweep
 from flexbase.synthesis import HARDWARE_METHODS
 from flexbase.synthesis.make import make_controller
 
@@ -84,6 +86,7 @@ __all__ = [
     "Gain",
     "Gains",
     "HARDWARE_METHODS",
+    "HardwarePath",
     "HardwareStudy",
     "HardwareVerdict",
     "Infeasible",
@@ -157,6 +160,7 @@ __all__ = [
     "save_csv",
     "save_netcdf",
     "save_plot",
+    "sheet",
     "simulate",
     "simulate_many",
     "simulate_sampled",

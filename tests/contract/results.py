@@ -5,11 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import cache
+from typing import TYPE_CHECKING
 
 import flexbase as fb
 from flexbase.sheets.told import Told
 from flexbase.study.agreement.case import Outcome, draw_case
 from systems.planar import PAPER_TIP
+
+if TYPE_CHECKING:
+    import xarray
 
 
 @cache
@@ -55,6 +59,20 @@ def agreement() -> fb.Agreement:
     return fb.Agreement("ueda2003", "nudge", 0, cases, outcomes, 0, 0, {1: {"why": "unexplained"}})
 
 
+VARY = {"payload": "uniform(0,2)"}
+SMALL = fb.Cells(shape=(3, 2))
+
+
+def map_of(loop: fb.Compensator | None = None) -> xarray.Dataset:
+    """Two measures in a few cells, one of them a mode's."""
+    return fb.sweep(paper(), ["robustness", "manipulability"], SMALL, loop=loop)
+
+
+DATASETS: dict[str, Callable[[], xarray.Dataset]] = {
+    "map": map_of,
+    "difference": lambda: fb.difference(map_of(), map_of(compensator())),
+    "hardware map": lambda: fb.hardware_map(paper(), "none", SMALL, execution=fb.Execution(workers=1)),
+}
 EXAMPLES: dict[str, Callable[[], Told]] = {
     "modes": lambda: fb.modes(pose()),
     "modes, compensated": lambda: fb.modes(pose(), compensator()),
@@ -67,6 +85,10 @@ EXAMPLES: dict[str, Callable[[], Told]] = {
     "hardware verdict, unstable": lambda: fb.hardware_verdict(controller("exact")),
     "comparison": lambda: fb.compare(pose(), ["none", "exact", "coprime"]),
     "safe gain": lambda: fb.safe_gain(pose(), "none"),
+    "region": lambda: fb.region(pose(), "none", half_width=0.01, shape=(2, 2), execution=fb.Execution(workers=1)),
+    "hardware path": lambda: fb.hardware_path(paper(), [[0.2, 0.4], PAPER_TIP, [2.0, 2.0]], workers=1),
+    "Monte Carlo at a pose": lambda: fb.montecarlo(pose(), fb.Draws(VARY, samples=20)),
+    "Monte Carlo map": lambda: fb.montecarlo(paper(), fb.Draws(VARY, samples=20), cells=SMALL),
     "controller": lambda: controller("exact"),
     "controller with notes": lambda: controller("robust"),
     "recommendation": lambda: recommendation("none", "viscous"),
@@ -78,6 +100,6 @@ EXAMPLES: dict[str, Callable[[], Told]] = {
 
 
 @cache
-def example(name: str) -> Told:
+def example(name: str) -> Told | xarray.Dataset:
     """Made once."""
-    return EXAMPLES[name]()
+    return {**EXAMPLES, **DATASETS}[name]()

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 import flexbase as fb
-from flexbase.cli.terminal.path_table import HEADS, path_row
 from flexbase.errors import InputError, Unreachable
 from flexbase.model.loop import Loop
 from flexbase.model.sensing import Sensing
 from flexbase.sampled.verdict import hardware_verdict
+from flexbase.sheets.sheet import Table
 from flexbase.study.running import hardware_map as module
-from flexbase.study.running.hardware_map import MEASURES, hardware_map, hardware_path
+from flexbase.study.running.hardware_map import MEASURES, hardware_map
 from flexbase.synthesis import controller_for
 
 FAST = Sensing(rate=4000.0)
@@ -50,12 +50,12 @@ def test_cells_are_single_verdicts(paper: fb.Plant) -> None:
 
 def test_path_and_given_gain(paper: fb.Plant, paper_pose: fb.Pose) -> None:
     comp = fb.design(paper_pose, natural_frequency=346.8)
-    rows = hardware_path(paper, [[0.33, -0.25], [2.0, 2.0]], loop=Loop(comp, sensing=FAST), workers=1)
-    assert [row["status"] for row in rows] == ["ok", "out of reach"]
-    assert rows[0]["spectral_radius"] == pytest.approx(0.99578, abs=1e-4)  # stable with E, 1.0018 without
-    assert np.isnan(rows[1]["spectral_radius"])
+    near, far = fb.hardware_path(paper, [[0.33, -0.25], [2.0, 2.0]], loop=Loop(comp, sensing=FAST), workers=1).tips
+    assert (near.status, far.status) == ("ok", "out of reach")
+    assert near.figures["spectral_radius"] == pytest.approx(0.99578, abs=1e-4)  # stable with E, 1.0018 without
+    assert far.figures["spectral_radius"] is None
     with pytest.raises(InputError, match="path: 3 values given, 2 needed"):
-        hardware_path(paper, [[1.0, 2.0, 3.0]])
+        fb.hardware_path(paper, [[1.0, 2.0, 3.0]])
 
 
 def test_stopped_and_gone_on_with(paper: fb.Plant, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -97,19 +97,20 @@ def test_what_a_map_of_verdicts_cannot_vary(paper: fb.Plant, cells: object, said
         hardware_map(paper, "none", cells)  # type: ignore[arg-type]
 
 
-def test_a_path_s_table_has_a_heading_over_every_figure(paper: fb.Plant) -> None:
-    """Stable, unstable, out of reach: as many cells as headings, and the figures of the single verdict."""
-    rows = hardware_path(paper, [[0.2, 0.4], [0.33, -0.25], [2.0, 2.0]], loop=Loop(sensing=FAST), workers=1)
-    assert [row["status"] for row in rows] == ["ok", "unstable", "out of reach"]
-    shown = [path_row(row) for row in rows]
-    assert {len(one) for one in shown} == {len(HEADS)}
+def test_a_path_s_table_tells_every_figure(paper: fb.Plant) -> None:
+    """Stable, unstable, out of reach: the figures of the single verdict, where they have a meaning."""
+    found = fb.hardware_path(paper, [[0.2, 0.4], [0.33, -0.25], [2.0, 2.0]], loop=Loop(sensing=FAST), workers=1)
+    assert [one.status for one in found.tips] == ["ok", "unstable", "out of reach"]
+    (table,) = (part for part in found.sheet().parts if isinstance(part, Table))
     verdict = hardware_verdict(controller_for(paper.at_tip([0.2, 0.4]), "none", FAST), brief=True)
-    assert shown[0][2:4] == [
+    assert table.rows[0][2:4] == (
         f"{verdict.spectral_radius:.4f}",
         f"{verdict.disk_margin_torque:.2f} {verdict.disk_margin_sensor:.2f}",
-    ]
-    assert shown[0][6] == "100"
-    assert shown[1][3:] == ["-", f"{rows[1]['worst_radius']:.4f}", "-", "-", "-"]
+    )
+    assert table.rows[0][6] == "100"
+    assert table.rows[1][3:] == ("-", f"{found.tips[1].figures['worst_radius']:.4f}", "-", "-", "-")
+    assert table.rows[2] == ("2, 2", "out of reach", *["-"] * 6)
+    assert [row["status"] for row in found.to_dict()["tips"]] == ["ok", "unstable", "out of reach"]
 
 
 def test_a_map_says_what_was_judged(paper: fb.Plant) -> None:

@@ -1,7 +1,7 @@
 """Sweeps: many configurations at once."""
 
 from flexbase.sweeps.answers.difference import difference
-from flexbase.sweeps.answers.summary import document, save_csv, summary
+from flexbase.sweeps.answers.summary import document, save_csv
 from flexbase.sweeps.answers.tables import save_netcdf
 from flexbase.sweeps.cells.parameters import PARAMETERS
 from flexbase.sweeps.engine.status import STATUS
@@ -19,6 +19,5 @@ __all__ = [
     "open_dataset",
     "save_csv",
     "save_netcdf",
-    "summary",
     "sweep",
 ]

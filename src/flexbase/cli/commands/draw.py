@@ -10,8 +10,9 @@ from cyclopts import App, Parameter
 from flexbase.cli.options.common import option
 from flexbase.cli.options.words import names, number
 from flexbase.cli.terminal.out import PICTURES, OutFile, check_out, write_out, written
-from flexbase.cli.terminal.show import put, title
+from flexbase.cli.terminal.screen import put
 from flexbase.errors import InputError, nearest_name
+from flexbase.sheets.sheet import Sheet
 from flexbase.study.montecarlo import is_study
 from flexbase.sweeps import difference, open_dataset
 from flexbase.sweeps.answers.chart import chart_of, thinned
@@ -55,10 +56,10 @@ def draw(
         found = difference(*(thinned(one) for one in (_chosen(open_dataset(before), at), found)))
     write_out(out, "draw", found, {})
     if is_study(found):
-        return put(title(found.attrs["robot"], f"{found.attrs['design']}, probability that it holds"), *written(out))
+        return put(Sheet(found.attrs["robot"], f"{found.attrs['design']}, probability that it holds"), *written(out))
     chart = chart_of(found)
     axes = ", ".join(axis.name for axis in chart.drawn or chart.axes)
-    put(title(chart.heading, f"{', '.join(layer.title for layer in chart.layers)} over {axes}"), *written(out))
+    put(Sheet(chart.heading, f"{', '.join(layer.title for layer in chart.layers)} over {axes}"), *written(out))
 
 
 def _chosen(dataset: Any, at: Values) -> Any:

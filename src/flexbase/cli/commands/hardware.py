@@ -11,14 +11,14 @@ from flexbase.cli.options.gains import GainOptions
 from flexbase.cli.options.pose import PoseOptions, Robot
 from flexbase.cli.options.sensing import SensingOptions
 from flexbase.cli.options.words import Names, names, number
-from flexbase.cli.terminal.document import document
-from flexbase.cli.terminal.out import OutFile, check_out, write_out, written
+from flexbase.cli.terminal.out import OutFile, check_out
 from flexbase.cli.terminal.progress import progress_bar
-from flexbase.cli.terminal.screen import put
+from flexbase.cli.terminal.show import say
 from flexbase.errors import InputError
 from flexbase.model.loop import Loop
 from flexbase.plant import load
-from flexbase.sheets.sheet import Sheet
+from flexbase.sheets.plain import plain
+from flexbase.sheets.sheet import together
 from flexbase.study.running.comparison import compare
 from flexbase.study.running.region import region
 from flexbase.study.running.safe_gain import safe_gain, sheet_of_gains
@@ -62,15 +62,13 @@ def hardware(
     with progress_bar() as progress:
         found = compare(at, method or None, meant)
         content: dict[str, Any] = {"declared": run.declared(plant), **found.to_dict()}
-        said: list[Sheet | str] = [found.sheet()]
-        drawn = None
+        said, drawn = [found.sheet()], None
         if safe_gain_:
             scales = [safe_gain(at, one.method, meant) for one in found.contenders if one.verdict]
-            content["safe_gain"] = [one.to_dict() for one in scales]
-            said += ["", sheet_of_gains(scales)]
+            content["safe_gain"] = plain(scales)
+            said.append(sheet_of_gains(scales))
         if region_:
             drawn = region(at, method[0], meant, half_width=half_width, progress=progress)
             content["region"] = drawn.to_dict()
-            said += ["", drawn.summary()]
-    write_out(out, "hardware", drawn, content)
-    put(document("hardware", content)) if json else put(*said, *written(out))
+            said.append(drawn.sheet())
+    say("hardware", content, together(*said), json, out, drawn)

@@ -15,15 +15,17 @@ from flexbase.cli.options.pose import Robot, compensator_of
 from flexbase.cli.options.sensing import SensingOptions
 from flexbase.cli.options.tips import tips_of
 from flexbase.cli.terminal.cells_bar import cells_bar
-from flexbase.cli.terminal.chart import check_map_out, store_of, tables, write_map
 from flexbase.cli.terminal.document import document
+from flexbase.cli.terminal.map_files import check_map_out, store_of, write_map
 from flexbase.cli.terminal.out import OutFile, written
-from flexbase.cli.terminal.path_table import HEADS, path_row
-from flexbase.cli.terminal.show import put, table, title
+from flexbase.cli.terminal.screen import put
+from flexbase.cli.terminal.show import show
 from flexbase.model.loop import Loop
 from flexbase.plant import load
-from flexbase.study.running.hardware_map import hardware_map, hardware_path
+from flexbase.study.running.hardware_map import hardware_map
+from flexbase.study.running.hardware_path import hardware_path
 from flexbase.sweeps import document as plain
+from flexbase.sweeps.answers.summary import sheet_of
 
 app = App(
     name="hardware-map",
@@ -55,15 +57,11 @@ def map_verdicts(
     plant = load(robot)
     meant = Loop(compensator_of(plant, compensator), loop.gains(plant), run.sensing(plant))
     with cells_bar(store_of(out)) as progress:
-        if path is None:
-            how = replace(execution, store=store_of(out))
-            found = hardware_map(plant, method, cells, loop=meant, execution=how, progress=progress)
-        else:
+        if path is not None:
             given: dict[str, Any] = {"branch": cells.branch, "workers": execution.workers, "progress": progress}
-            rows = hardware_path(plant, tips_of(path), method, loop=meant, **given)
-    if path is not None:
-        shown = table(HEADS, [path_row(row) for row in rows], words=(0, 1))
-        put(document("hardware-path", {"tips": rows})) if json else put(title(plant.name, method), shown)
-        return
+            return show("hardware-path", hardware_path(plant, tips_of(path), method, loop=meant, **given), json)
+        how = replace(execution, store=store_of(out))
+        found = hardware_map(plant, method, cells, loop=meant, execution=how, progress=progress)
     write_map(out, found)
-    put(document("hardware-map", plain(found))) if json else put(*tables(found), *written(out))
+    put(document("hardware-map", plain(found))) if json else put(sheet_of(found), *written(out))
+    return None

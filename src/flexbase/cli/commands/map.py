@@ -11,14 +11,15 @@ from flexbase.cli.options.common import CompensatorFile, Json, option
 from flexbase.cli.options.plane import CellOptions, ExecutionOptions
 from flexbase.cli.options.pose import Robot, compensator_of
 from flexbase.cli.options.words import Names, names
-from flexbase.cli.terminal.chart import check_map_out, store_of, tables, write_map
 from flexbase.cli.terminal.document import document
+from flexbase.cli.terminal.map_files import check_map_out, store_of, write_map
 from flexbase.cli.terminal.out import OutFile, written
-from flexbase.cli.terminal.show import put
+from flexbase.cli.terminal.screen import put
 from flexbase.cli.terminal.sweeping import check_difference, compared, swept
 from flexbase.measures import MEASURES
 from flexbase.plant import load
 from flexbase.sweeps import document as numbers
+from flexbase.sweeps.answers.summary import sheet_of
 
 app = App(
     name="map",
@@ -58,4 +59,4 @@ def map_cells(
     ask = compared if difference else swept
     found = ask(plant, measures, cells, how, used)
     write_map(out, found)
-    put(document("map", numbers(found))) if json else put(*tables(found), *written(out))
+    put(document("map", numbers(found))) if json else put(sheet_of(found), *written(out))

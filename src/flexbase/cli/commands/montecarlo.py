@@ -11,11 +11,9 @@ from flexbase.cli.options.common import CompensatorFile, Json, option
 from flexbase.cli.options.plane import DrawOptions, StudyCells, StudyExecution
 from flexbase.cli.options.pose import PoseOptions, Robot, compensator_of
 from flexbase.cli.options.words import Names, names
-from flexbase.cli.terminal.document import document
-from flexbase.cli.terminal.out import OutFile, check_out, written
-from flexbase.cli.terminal.probability import KINDS, tables, write_probability
+from flexbase.cli.terminal.out import PICTURES, OutFile, check_out
 from flexbase.cli.terminal.progress import progress_bar
-from flexbase.cli.terminal.show import put
+from flexbase.cli.terminal.show import show
 from flexbase.plant import Pose, load
 from flexbase.study.montecarlo import CRITERIA, DISTRIBUTIONS, montecarlo
 
@@ -51,7 +49,7 @@ def probability(
     json: Json = False,
 ) -> None:
     """Probability that a design holds while the plant varies: at a --tip or --joints, else in every cell of a map."""
-    check_out(out, KINDS)
+    check_out(out, (*PICTURES, ".csv", ".json", ".nc"))
     plant = load(robot)
     where = plant if pose.tip is None and pose.joints is None else pose.pose(plant)
     used = compensator_of(plant, compensator)
@@ -66,5 +64,4 @@ def probability(
             execution=execution,
             progress=report,
         )
-    write_probability(out, found)
-    put(document("montecarlo", found.to_dict())) if json else put(*tables(found, where), *written(out))
+    show("montecarlo", found, json, out)

@@ -29,7 +29,7 @@ def check_out(path: Path | None, suffixes: Sequence[str] = (*PICTURES, ".json"))
 
 
 def write_out(path: Path | None, command: str, result: Any, content: Mapping[str, Any]) -> None:
-    """Write a result as its suffix says: a picture, its table as CSV, or its JSON document. Raises InputError."""
+    """Write a result as its suffix says: a picture, a table, NetCDF, or its JSON document. Raises InputError."""
     if path is None:
         return
     suffix = path.suffix.lower()
@@ -37,6 +37,8 @@ def write_out(path: Path | None, command: str, result: Any, content: Mapping[str
         write_text(path, document(command, content) + "\n")
     elif suffix == ".csv":
         result.save_csv(path)
+    elif suffix == ".nc":
+        result.save_netcdf(path)
     else:
         from flexbase.report.plot import save_plot
 

@@ -4,7 +4,7 @@ from flexbase.study.montecarlo.criterion import CRITERIA, Criterion
 from flexbase.study.montecarlo.distribution import DISTRIBUTIONS, Fixed, Lognormal, Normal, Uniform
 from flexbase.study.montecarlo.draws import Draws
 from flexbase.study.montecarlo.interval import Estimate
-from flexbase.study.montecarlo.result import LEVELS, MonteCarlo, is_study, shown
+from flexbase.study.montecarlo.result import LEVELS, MonteCarlo, is_study
 from flexbase.study.montecarlo.run import montecarlo
 
 __all__ = [
@@ -21,5 +21,4 @@ __all__ = [
     "Uniform",
     "is_study",
     "montecarlo",
-    "shown",
 ]

@@ -11,18 +11,22 @@ import numpy as np
 
 from flexbase.errors import InputError
 from flexbase.sheets.plain import plain
+from flexbase.sheets.sheet import Column, Note, Sheet, facts, make_sheet, table, words
+from flexbase.sheets.told import Told
 from flexbase.study.montecarlo.interval import CONFIDENCE, Estimate, probability_interval
+from flexbase.sweeps.answers.summary import counts
 from flexbase.sweeps.answers.tables import check_small, dims_of, places_of, save_netcdf, write_columns
-from flexbase.sweeps.engine.status import INFEASIBLE, OK, STATUS
+from flexbase.sweeps.engine.status import INFEASIBLE, OK, STATUS, statuses_of
 
 if TYPE_CHECKING:
     import xarray
 
+AT = ("joints", "tip")  # attributes that say where a single pose is
 LEVELS = (0.5, 0.9, 0.95, 0.99)
 
 
 @dataclass(frozen=True, eq=False)
-class MonteCarlo:
+class MonteCarlo(Told):
     """Probability that a design holds, at one pose or in every cell of a map. Made by `montecarlo`.
 
     dataset : an `xarray.Dataset`. Of each cell: `probability` with the bounds `lower` and `upper`, `held` (draws that
@@ -115,17 +119,38 @@ class MonteCarlo:
             said["share_at_least"] = {f"{level:g}": plain(self.share_at_least(level)) for level in LEVELS}
         return said
 
-    def summary(self) -> str:
-        """Plain text: what was asked, and what came out."""
-        attributes = self.dataset.attrs
-        draws = f"{self.dataset.sizes['draw']} draws, seed {attributes['seed']}"
-        lines = [f"{attributes['robot']}, {attributes['design']}: {draws}", f"  varied: {attributes['vary']}"]
-        lines.append(f"  holds means: {attributes['criteria']}")
-        if not self.is_map:
-            return "\n".join([*lines, f"  probability {shown(self.at_pose)}"])
-        lines += [f"  {self.cells} cells of the workspace; expected share that holds {shown(self.expected_share)}"]
-        lines += [f"  holds with probability >= {one:g} in a share {shown(self.share_at_least(one))}" for one in LEVELS]
-        return "\n".join(lines)
+    def sheet(self) -> Sheet:
+        """What was asked, and probabilities with their intervals."""
+        found, said = self.dataset, self.dataset.attrs
+        asked = [
+            *((name, said[name]) for name in AT if name in said),
+            ("varied", said["vary"].replace("; ", "\n")),
+            ("to hold", said["criteria"].replace("; ", "\n")),
+            ("draws", f"{found.sizes['draw']}, {said['sampling']}, seed {said['seed']}"),
+        ]
+        nominal = found["nominal"].values
+        if self.is_map:
+            meanings = statuses_of(found)
+            asked += [(meanings[code], f"{count} cells") for code, count in counts(found).items()]
+            asked += [("unvaried", f"holds in {int(nominal.sum())} cells")]
+            columns = (words("that holds"), Column("share of workspace"), Column("from"), Column("to"))
+            told = {f"probability >= {level:g}": self.share_at_least(level) for level in LEVELS}
+            told = {"expected": self.expected_share, **told}
+        else:
+            asked += [("unvaried", "holds" if nominal.item() else "does not hold")]
+            columns = (words("criterion"), Column("probability"), Column("from"), Column("to"))
+            told = {"all": self.at_pose, **self.by_criterion}
+        rows = [
+            (name, *(f"{value:.4f}" if np.isfinite(value) else "none" for value in one)) for name, one in told.items()
+        ]
+        return make_sheet(
+            said["robot"],
+            f"{said['design']}, probability that it holds",
+            facts(*asked),
+            table(columns, rows),
+            Note(f"Intervals ({100.0 * CONFIDENCE:g} %) cover the finite number of draws, not wrong distributions."),
+            cautions=str(said.get("cautions", "")).splitlines(),
+        )
 
     def save_csv(self, path: str | Path) -> None:
         """A map: one line a cell. A pose: one line a draw, with its parameters. Raises InputError."""
@@ -147,8 +172,3 @@ class MonteCarlo:
 def is_study(dataset: object) -> TypeGuard[xarray.Dataset]:
     """Whether an `xarray.Dataset` is that of a `MonteCarlo`: `MonteCarlo(dataset)` then speaks for it again."""
     return isinstance(dataset, Mapping) and "criterion_probability" in dataset
-
-
-def shown(estimate: Estimate) -> str:
-    """`0.874 (0.852 to 0.894)`."""
-    return f"{estimate.value:.4f} ({estimate.lower:.4f} to {estimate.upper:.4f})"

@@ -103,6 +103,7 @@ def montecarlo(
         "confidence": CONFIDENCE,
         "engine": engine,
         "cautions": "\n".join(said),
+        **(dict(where.where.rows) if isinstance(where, Pose) else {}),
     }
     each = how.samples
     counted = run(

@@ -1,4 +1,4 @@
-"""Verdicts on the loop as it runs over a plane of tips, or along a path: questions that are asked pose by pose."""
+"""Verdicts on the loop as it runs over a plane of tips: a question that is asked pose by pose."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexbase.checks import Array, check_left_out, check_length, choose
+from flexbase.checks import Array, check_left_out, choose
 from flexbase.errors import FlexbaseError, InputError
 from flexbase.model.loop import Asked, LoopSpec, loop_on
 from flexbase.model.sensing import Sensing
@@ -19,12 +19,11 @@ from flexbase.sampled.controller import pd_with_gain
 from flexbase.sampled.figures import FIGURES
 from flexbase.sampled.judged import judged
 from flexbase.sweeps.cells.axis import block_shape
-from flexbase.sweeps.cells.domain import Listed
 from flexbase.sweeps.cells.grids import tip_place
 from flexbase.sweeps.engine.poses import EachPose
 from flexbase.sweeps.engine.question import MEASURED, Column
 from flexbase.sweeps.engine.runner import run
-from flexbase.sweeps.engine.status import INFEASIBLE, OK, UNSTABLE, VERDICTS
+from flexbase.sweeps.engine.status import INFEASIBLE, OK, UNSTABLE
 from flexbase.sweeps.kept.recipe import recipe_of
 from flexbase.sweeps.requests import TIP, Cells, Execution
 from flexbase.synthesis import HARDWARE_METHODS, controller_for
@@ -90,41 +89,26 @@ def hardware_map(
     Raises InputError.
     """
     cells, execution = _over_tips(cells).shaped(USUAL_SHAPE), Execution.checked(execution)
-    question, meant = _question(plant, method, loop, cells.branch)
+    question, meant = question_of(plant, method, loop, cells.branch)
     place = tip_place(plant, cells, targets=True)
     block = block_shape(place.domain.shape, BLOCK)
     recipe = recipe_of(question, plant.arm, place, cells.branch or plant.arm.task.branch, block)
     attributes = {
         "robot": plant.name,
         "compensated": int(meant.E is not None),
-        "judged": f"{'given E' if meant.E is not None else f'method {method}'} at {meant.sensing.rate:g} Hz",
+        "judged": judged_by(method, meant),
         "over": TIP,
     }
     return run(question, place.domain, block, execution, progress, attributes, recipe)
 
 
-def hardware_path(
-    plant: Plant,
-    tips: Sequence[Sequence[float]],
-    method: str = "none",
-    *,
-    loop: Asked = None,
-    branch: str | None = None,
-    workers: int | None = None,
-    progress: Progress = no_progress,
-) -> list[dict[str, Any]]:
-    """The same along a path: for each tip "tip", "status" in words, and the measures. Raises InputError."""
-    question, _ = _question(plant, method, loop, branch)
-    targets = np.array([check_length("path", tip, plant.arm.k, "one for each task row") for tip in tips])
-    found = run(question, Listed(targets), (BLOCK,), Execution(workers=workers), progress, {})
-    columns = [found[name].values.tolist() for name in MEASURES]
-    return [
-        {"tip": tip, "status": VERDICTS[code], **dict(zip(MEASURES, row, strict=True))}
-        for tip, code, *row in zip(targets.tolist(), found["status"].values.tolist(), *columns, strict=True)
-    ]
+def judged_by(method: str, meant: LoopSpec) -> str:
+    """What is judged, in words."""
+    return f"{'given E' if meant.E is not None else f'method {method}'} at {meant.sensing.rate:g} Hz"
 
 
-def _question(plant: Plant, method: str, loop: Asked, branch: str | None) -> tuple[EachPose, LoopSpec]:
+def question_of(plant: Plant, method: str, loop: Asked, branch: str | None) -> tuple[EachPose, LoopSpec]:
+    """What is asked in every cell, checked, and the loop that is meant. Raises InputError."""
     choose("method", method, HARDWARE_METHODS)
     check_plant(plant)
     meant = loop_on(plant.arm, loop)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,8 @@ from flexbase.plant import Pose, check_pose
 from flexbase.requests import Progress, no_progress
 from flexbase.sampled.controller import SampledController, pd_with_gain
 from flexbase.sampled.judged import judged
+from flexbase.sheets.sheet import Sheet, answer, facts, make_sheet
+from flexbase.sheets.told import Told
 from flexbase.sweeps.cells.axis import block_shape
 from flexbase.sweeps.cells.grids import tip_place
 from flexbase.sweeps.engine.poses import EachPose
@@ -39,7 +41,7 @@ SAME = 1e-3  # rad or m
 
 
 @dataclass(frozen=True, eq=False)
-class Region:
+class Region(Told):
     """Verdicts on one controller at tips around the pose it was made for.
 
     what : "E", the gain constant and the task law following the arm, or "controller", everything constant
@@ -61,26 +63,24 @@ class Region:
     safe_radius: float | None
     stable_radius: float | None
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers."""
-        whole = {name: getattr(self, name) for name in ("robot", "method", "what", "safe_radius", "stable_radius")}
-        grid = {"rows": list(self.rows), "x": self.x.tolist(), "y": self.y.tolist(), "grade": self.grade.tolist()}
-        return {
-            **whole,
-            "tip": list(self.tip),
-            **grid,
-            "meanings": {str(code): said for code, said in MEANINGS.items()},
-        }
+    meanings: ClassVar = MEANINGS
+    document: ClassVar = (
+        *("robot", "method", "what", "safe_radius", "stable_radius", "tip", "rows", "x", "y", "grade", "meanings"),
+    )
 
-    def summary(self) -> str:
-        """Two lines."""
-        reached = self.grade > OUT_OF_REACH
-        share = [100.0 * float(np.mean(self.grade[reached] >= code)) for code in (SAFE, STABLE)]
-        return (
-            f"{self.robot}, {self.method}, constant {self.what}: safe in {share[0]:.0f} %, stable in {share[1]:.0f} % "
-            f"of the reached cells\n  safe within {_shown(self.safe_radius, self.units[0])} of the design tip, "
-            f"stable within {_shown(self.stable_radius, self.units[0])}"
+    def sheet(self) -> Sheet:
+        """Shares of the reached cells, and how far around the design tip all of them are good."""
+        return make_sheet(
+            self.robot,
+            f"{self.method}, constant {self.what}, around the design tip",
+            facts(("safe", self._share(SAFE, self.safe_radius)), ("stable", self._share(STABLE, self.stable_radius))),
+            answer(self.safe_radius is not None, "Safe at the design tip", "Not safe at the design tip"),
         )
+
+    def _share(self, code: int, radius: float | None) -> str:
+        share = 100.0 * np.mean(self.grade[self.grade > OUT_OF_REACH] >= code)
+        near = "not at" if radius is None else f"in all of them within {radius:.3f} {self.units[0]} of"
+        return f"in {share:.0f} % of the reached cells, {near} the design tip"
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,7 +175,3 @@ def _radius(distance: Array, grade: NDArray[np.int8], code: int, half: float) ->
     """Distance of the nearest reached cell that is worse than a code; the half-width where there is none."""
     bad = (grade > OUT_OF_REACH) & (grade < code)
     return float(min(distance[bad].min(initial=half), half))
-
-
-def _shown(radius: float | None, unit: str) -> str:
-    return "none" if radius is None else f"{radius:.3f} {unit}"

@@ -1,4 +1,4 @@
-"""A sweep's answer in words, as plain numbers, and as a table on disk."""
+"""A sweep's answer as a sheet, as plain numbers, and as a table on disk."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ import numpy as np
 
 from flexbase.checks import Array
 from flexbase.measures import MEASURES
+from flexbase.sheets.numbers import number
 from flexbase.sheets.plain import plain
+from flexbase.sheets.sheet import Column, Sheet, facts, make_sheet, table, words
 from flexbase.sweeps.answers.tables import check_small, dims_of, places_of, write_columns
 from flexbase.sweeps.engine.question import COMPANION, MEASURED, MODE
 from flexbase.sweeps.engine.status import statuses_of
@@ -30,6 +32,14 @@ class Extent(NamedTuple):
     smallest: float
     largest: float
     unit: str
+
+    def row(self) -> tuple[str, ...]:
+        """In words."""
+        ends = (number(self.smallest, 7), number(self.largest, 7)) if self.smallest == self.smallest else ("none",) * 2
+        return self.measure, str(self.mode) if self.mode else "", *ends, self.unit
+
+
+COLUMNS = (words("measure"), Column("mode"), Column("smallest"), Column("largest"), words("unit"))
 
 
 def measures_of(dataset: xarray.Dataset) -> list[str]:
@@ -72,16 +82,26 @@ def _parts(dataset: xarray.Dataset, variable: xarray.DataArray) -> Iterator[Arra
         yield np.asarray(variable.isel({first: slice(begin, begin + step)}).values)
 
 
-def summary(dataset: xarray.Dataset) -> str:
-    """A line on the cells and one on each measure."""
-    meanings = statuses_of(dataset)
-    cells = ", ".join(f"{number} {meanings[code]}" for code, number in counts(dataset).items())
-    lines = [f"{dataset.attrs['robot']}: {dataset['status'].size} cells, {cells}"]
-    for one in extents(dataset):
-        mode = f" of mode {one.mode}" if one.mode else ""
-        known = f"{one.smallest:.6g} to {one.largest:.6g}" if one.smallest == one.smallest else "no value"
-        lines.append(f"  {one.measure}{mode}: {known} {one.unit}")
-    return "\n".join(lines)
+def sheet_of(dataset: xarray.Dataset) -> Sheet:
+    """Axes and cells, what zeros mean, and the smallest and largest value of each measure."""
+    given, meanings = dataset.attrs, statuses_of(dataset)
+    judged, compensated = given.get("judged"), "with" if given["compensated"] else "without"
+    of = f"of {judged}" if judged else f"{compensated} compensator"
+    axes = [(f"axis {name}", _ends(dataset[name])) for name in reversed(dims_of(dataset))]
+    cells = [(meanings[code], f"{count} cells") for code, count in counts(dataset).items()]
+    zeros = [(f"{name} = 0", zero) for name in measures_of(dataset) if (zero := dataset[name].attrs.get("zero_is"))]
+    return make_sheet(
+        given["robot"],
+        f"map {given.get('difference', of)}",
+        facts(*axes, *cells, *zeros),
+        table(COLUMNS, (one.row() for one in extents(dataset))),
+        cautions=str(given.get("cautions", "")).splitlines(),
+    )
+
+
+def _ends(axis: xarray.DataArray) -> str:
+    unit = "" if axis.attrs["units"] == "1" else f" {axis.attrs['units']}"
+    return f"{number(float(axis[0]), 6)} to {number(float(axis[-1]), 6)}{unit}, {axis.size} cells"
 
 
 def document(dataset: xarray.Dataset) -> dict[str, Any]:
