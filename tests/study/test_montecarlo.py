@@ -294,7 +294,7 @@ def test_results_speak(paper: fb.Plant, paper_pose: fb.Pose, designed: fb.Compen
     plain = found.to_dict()
     assert np.shape(plain["probability"]) == (6, 7)
     assert plain["share_at_least"]["0.95"]["value"] == found.share_at_least(0.95).value
-    assert "expected share" in found.summary()
+    assert f"expected {found.expected_share.value:.4f}" in " ".join(found.summary().split())
     found.save_csv(tmp_path / "m.csv")
     table = np.genfromtxt(tmp_path / "m.csv", delimiter=",", names=True)
     assert len(table) == 42
