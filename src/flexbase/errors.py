@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import difflib
 import importlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
 from types import ModuleType
 
 
@@ -50,6 +52,16 @@ def import_extra(module: str, extra: str) -> ModuleType:
     except ImportError as missing:
         message = f'{module} is not installed. Install it with: pip install "flexbase[{extra}]"'
         raise MissingExtra(message) from missing
+
+
+@contextmanager
+def writing(path: str | Path) -> Iterator[None]:
+    """Within, a place that cannot be written is an InputError that names it."""
+    try:
+        yield
+    except OSError as fault:
+        why = fault.strerror or fault
+        raise InputError(f"{path}: cannot be written ({why}). Give a file in an existing folder.") from fault
 
 
 def nearest_name(name: str, valid: Iterable[str]) -> str:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from flexbase.checks import Array, check_symmetric, finite_array
-from flexbase.errors import InputError
+from flexbase.errors import InputError, writing
 
 FORMAT = "flexbase compensator 1"
 MEND = "Give a file that `flexbase design --out` or `Compensator.save` wrote."
@@ -85,12 +85,8 @@ class Compensator:
     def save(self, path: str | Path) -> None:
         """Write as JSON. Raises InputError where the place cannot be written."""
         text = json.dumps({"format": FORMAT, **self.to_dict()}, indent=2) + "\n"
-        try:
+        with writing(path):
             Path(path).write_text(text, encoding="utf-8")
-        except OSError as fault:
-            raise InputError(
-                f"{path}: cannot be written ({fault.strerror}). Give a file in an existing folder."
-            ) from fault
 
 
 def load_compensator(path: str | Path) -> Compensator:

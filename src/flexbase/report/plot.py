@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from functools import singledispatch
 from pathlib import Path
+from typing import TYPE_CHECKING, TypeGuard
 
 from matplotlib.figure import Figure
 
@@ -38,6 +39,9 @@ from flexbase.study.robust_configurations.curves import RobustCurves
 from flexbase.study.robust_configurations.points import RobustPoints
 from flexbase.study.running.region import Region
 from flexbase.sweeps.answers.chart import Chart
+
+if TYPE_CHECKING:
+    import xarray
 
 PAGE = ".html"
 
@@ -85,10 +89,10 @@ def save_plot(result: object, path: str | Path) -> None:
     save_figure(plot(result), path)
 
 
-def _is_sweep(result: object) -> bool:
+def _is_sweep(result: object) -> TypeGuard[xarray.Dataset]:
     return _is_dataset(result) and not is_study(result)
 
 
-def _is_dataset(result: object) -> bool:
+def _is_dataset(result: object) -> TypeGuard[xarray.Dataset]:
     """Whether it is a sweep or a study; xarray itself takes long to import."""
     return type(result).__module__.startswith("xarray")

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from flexbase.errors import InputError
+from flexbase.errors import InputError, writing
 from flexbase.report.style import SCREEN_DPI, styled
+from flexbase.sweeps.answers.tables import write_rows
 
 METADATA: dict[str, dict[str, str | None]] = {
     ".png": {"Software": "flexbase"},
@@ -32,11 +32,8 @@ def save_figure(figure: Figure, path: str | Path) -> None:
     """Write a figure as png, svg or pdf, by suffix. Raises InputError naming the suffix or the unwritable place."""
     place = check_picture_path(path)
     kind = place.suffix.lower()
-    try:
-        with styled():
-            figure.savefig(place, format=kind[1:], dpi=SCREEN_DPI, metadata=METADATA[kind])
-    except OSError as fault:
-        raise _unwritable(place, fault) from fault
+    with writing(place), styled():
+        figure.savefig(place, format=kind[1:], dpi=SCREEN_DPI, metadata=METADATA[kind])
 
 
 def make_folder(path: str | Path) -> Path:
@@ -51,21 +48,13 @@ def make_folder(path: str | Path) -> Path:
 
 def save_csv(path: Path, header: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
     """Write a table; numbers with 9 significant digits, what is undefined as an empty field. Raises InputError."""
-    try:
-        with path.open("w", newline="", encoding="utf-8") as file:
-            table = csv.writer(file)
-            table.writerow(header)
-            table.writerows([_field(value) for value in row] for row in rows)
-    except OSError as fault:
-        raise _unwritable(path, fault) from fault
+    write_rows(path, header, ([_field(value) for value in row] for row in rows))
 
 
 def save_text(path: Path, text: str) -> None:
     """Write text. Raises InputError."""
-    try:
+    with writing(path):
         path.write_text(text, encoding="utf-8")
-    except OSError as fault:
-        raise _unwritable(path, fault) from fault
 
 
 def _field(value: object) -> object:
@@ -74,7 +63,3 @@ def _field(value: object) -> object:
     if isinstance(value, float | np.floating):
         return f"{value:.9g}" if np.isfinite(value) else ""
     return value
-
-
-def _unwritable(path: Path, fault: OSError) -> InputError:
-    return InputError(f"{path}: cannot be written ({fault.strerror or fault}). Give a file in an existing folder.")

@@ -10,7 +10,7 @@ import numpy as np
 
 from flexbase.cautions import caution
 from flexbase.checks import Array, finite_array, positive_number
-from flexbase.errors import InputError
+from flexbase.errors import InputError, writing
 from flexbase.linear.discrete.system import Discrete
 from flexbase.model.digest import model_digest
 from flexbase.model.sensing import Sensing, checked_sensing
@@ -30,10 +30,8 @@ def save_controller(controller: SampledController, path: str | Path) -> None:
         **controller.to_dict(),
         "shapes": {part: list(getattr(system, part).shape) for part in "ABCD"},
     }
-    try:
+    with writing(path):
         Path(path).write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
-    except OSError as fault:
-        raise InputError(f"{path}: cannot be written ({fault.strerror}). Give a file in an existing folder.") from fault
 
 
 def load_controller(path: str | Path, plant: Plant) -> SampledController:

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from flexbase.cli.terminal.document import document
-from flexbase.errors import InputError
+from flexbase.errors import InputError, writing
 
 PICTURES = (".png", ".svg", ".pdf")
 OutFile = Annotated[Path | None, Parameter(name=["--out", "-o"], metavar="FILE")]
@@ -55,10 +55,9 @@ def written(path: Path | None) -> list[str]:
 
 def write_text(path: Path, text: str, mode: str = "w") -> None:
     """Write a text file. Raises InputError; mode "x" refuses to overwrite."""
-    try:
-        with path.open(mode, encoding="utf-8", newline="\n") as file:
-            file.write(text)
-    except FileExistsError as fault:
-        raise InputError(f"{path}: already exists and is not overwritten. Give another name.") from fault
-    except OSError as fault:
-        raise InputError(f"{path}: cannot be written ({fault.strerror}). Give a file in an existing folder.") from fault
+    with writing(path):
+        try:
+            with path.open(mode, encoding="utf-8", newline="\n") as file:
+                file.write(text)
+        except FileExistsError as fault:
+            raise InputError(f"{path}: already exists and is not overwritten. Give another name.") from fault

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 
@@ -11,8 +11,11 @@ from flexbase.report.maps.plane_maps import draw_plane, draw_slices
 from flexbase.report.maps.samples import draw_samples
 from flexbase.sweeps.answers.chart import Chart, chart_of
 
+if TYPE_CHECKING:
+    import xarray
 
-def draw_dataset(dataset: Any) -> Figure:
+
+def draw_dataset(dataset: xarray.Dataset) -> Figure:
     """All measures of a sweep. Raises InputError for one that no picture shows."""
     return draw_chart(chart_of(dataset))
 

@@ -8,11 +8,11 @@ import json
 import re
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexbase.errors import InputError, import_extra
+from flexbase.errors import import_extra, writing
 from flexbase.report.page.others import curve_panels, sample_panels
 from flexbase.report.page.planes import Panel, plane_panels, slice_panels
 from flexbase.report.page.traces import SHAPES
@@ -20,19 +20,20 @@ from flexbase.sweeps.answers.chart import Chart, chart_of
 from flexbase.sweeps.answers.summary import measures_of
 from flexbase.sweeps.engine.question import MODE
 
+if TYPE_CHECKING:
+    import xarray
+
 LARGEST, LEAST = 600, 100  # cells along an axis
 CELLS = 720_000  # in all panels together: about 5 MB
 SLICES = 12
 
 
-def save_page(result: Any, path: str | Path) -> None:
+def save_page(result: Chart | xarray.Dataset, path: str | Path) -> None:
     """A sweep's dataset or chart as an interactive page, self-contained. Raises InputError, MissingExtra."""
     chart = result if isinstance(result, Chart) else chart_of(result, _fineness(result), SLICES)
     text = page(chart)
-    try:
+    with writing(path):
         Path(path).write_text(text, "utf-8", newline="\n")
-    except OSError as fault:
-        raise InputError(f"{path}: cannot be written ({fault.strerror}). Give a file in an existing folder.") from fault
 
 
 def page(chart: Chart) -> str:
@@ -59,7 +60,7 @@ def page(chart: Chart) -> str:
     return re.sub("@([A-Z]+)@", lambda sign: filled[sign[1]], (parts / "page.html").read_text("utf-8"))
 
 
-def _fineness(dataset: Any) -> int:
+def _fineness(dataset: xarray.Dataset) -> int:
     """Cells along an axis, so that all panels together stay small."""
     layers = sum(dataset.sizes[MODE] if MODE in dataset[name].dims else 1 for name in measures_of(dataset))
     outer = [dataset.sizes[dim] for dim in dataset["status"].dims[:-2]]

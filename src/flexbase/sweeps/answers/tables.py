@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from flexbase.errors import InputError
+from flexbase.errors import InputError, writing
 
 if TYPE_CHECKING:
     import xarray
@@ -20,13 +20,10 @@ LARGEST_TABLE = 4_000_000  # cells written as CSV, JSON or NetCDF
 
 def write_rows(path: str | Path, header: Iterable[str], rows: Iterable[Sequence[object]]) -> None:
     """Write a table, numbers with all their digits. Raises InputError where the place cannot be written."""
-    try:
-        with open(path, "w", newline="", encoding="utf-8") as file:
-            table = csv.writer(file)
-            table.writerow(header)
-            table.writerows(rows)
-    except OSError as fault:
-        raise InputError(f"{path}: cannot be written ({fault.strerror}). Give a file in an existing folder.") from fault
+    with writing(path), open(path, "w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow(header)
+        table.writerows(rows)
 
 
 def write_columns(path: str | Path, columns: Mapping[str, NDArray[Any]]) -> None:
@@ -65,8 +62,9 @@ def save_netcdf(dataset: xarray.Dataset, path: str | Path) -> None:
     place = Path(path)
     part = place.with_name(f".{place.name}.part")
     try:
-        dataset.to_netcdf(part, engine="scipy")
-        part.replace(place)
-    except OSError as fault:
+        with writing(path):
+            dataset.to_netcdf(part, engine="scipy")
+            part.replace(place)
+    except InputError:
         part.unlink(missing_ok=True)
-        raise InputError(f"{path}: cannot be written ({fault.strerror}). Give a file in an existing folder.") from fault
+        raise
