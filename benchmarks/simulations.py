@@ -49,9 +49,9 @@ def simulate_vs_mujoco() -> list[Ratio]:
     The kernel also watches the tip error and M's pivots in every step; `mujoco.rollout` also writes every state.
     """
     goal = plant(PLANAR3R).at_tip(TIP)
-    law, m = JointPD(goal, 2e3, 40.0), goal.arm.m
+    law = JointPD(goal, 2e3, 40.0)
     starts = np.tile(goal.q[:, None], (1, RUNS))
-    starts[m:] += np.random.default_rng(0).uniform(-0.1, 0.1, (goal.arm.n, RUNS))
+    starts[list(goal.arm.parts.active)] += np.random.default_rng(0).uniform(-0.1, 0.1, (goal.arm.n, RUNS))
     rollout, few = _rollout(goal, law, starts[:, :FEW]), np.ascontiguousarray(starts[:, :FEW])
     truth = np.array([_reference(goal, law, start) for start in few.T[:CHECKED]]).T
     ours, theirs = _kernel(law, few), rollout()
@@ -113,7 +113,7 @@ def _reference(goal: fb.Pose, law: JointPD, start: np.ndarray) -> np.ndarray:
 
     def rate(time: float, x: np.ndarray) -> np.ndarray:
         q, rates = x[:N], x[N:]
-        torque = np.array(law.torque(Measured(time, q[arm.m :], rates[arm.m :], (), ())))
+        torque = np.array(law.torque(Measured(time, arm.parts.arm(q), arm.parts.arm(rates), (), ())))
         return np.concatenate([rates, accelerations(goal, forward(arm.mechanism, tuple(q)), q, rates, torque, None)])
 
     x = np.concatenate([start, np.zeros(N)])

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import flexbase as fb
+from flexbase.linear.discrete.system import feedback
 from flexbase.model.loop import Loop
 from flexbase.model.sensing import Sensing
 from flexbase.sampled.controller import SampledController, pd_with_gain
@@ -40,6 +41,21 @@ def test_torque_noise_is_what_a_simulation_shows(loop: SampledController) -> Non
     assert torque_noise(loop.pose, loop) == pytest.approx(np.sqrt(total / len(noise)), rel=0.05)
     quiet = replace(loop, sensing=replace(loop.sensing, encoder_counts=1e12, task_noise=1e-12, acceleration_noise=1e-9))
     assert torque_noise(loop.pose, quiet).max() < 1e-4 * torque_noise(loop.pose, loop).min()
+
+
+def test_torque_noise_keeps_its_digits(paper_pose: fb.Pose) -> None:
+    """Base deflection by differences has entries of 1e5: a bilinear transform of its loop loses all digits but three.
+
+    The witness lets the covariance settle sample by sample. 1e-8: far above the rounding of 4000 sums.
+    """
+    made = fb.make_controller(paper_pose, "deflection")
+    plant = sampled_plant(paper_pose, made.sensing).select(list(range(6)), [0, 1])
+    closed, spread = feedback(made.system, plant), np.diag(sensor_noise(made) ** 2)
+    X = np.zeros_like(closed.A)
+    for _ in range(4000):  # samples: the slowest motion, of radius 0.981, is down to 1e-33
+        X = closed.A @ X @ closed.A.T + closed.B @ spread @ closed.B.T
+    wanted = np.sqrt(np.diag(closed.C @ X @ closed.C.T + closed.D @ spread @ closed.D.T))
+    assert torque_noise(paper_pose, made) == pytest.approx(wanted, rel=1e-8)
 
 
 @pytest.fixture(scope="module")
