@@ -8,7 +8,7 @@ PYTEST := $(BIN)/python -m pytest -n auto --dist loadfile
 # pytest has a process on every core already; more threads of linear algebra only wait for each other.
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: demo test test-slow test-all test-core test-other test-newest lock lint docs bench clean
+.PHONY: demo test test-slow test-all test-core test-other test-newest mutation lock lint docs bench clean
 
 demo: $(VENV)/.core               ## reproduce the paper into out/paper
 	$(BIN)/flexbase reproduce --out out/paper
@@ -30,6 +30,9 @@ test-other: $(VENV)/.test         ## in a VENV of another PYTHON: the command li
 
 test-newest:                      ## the same as `test` with the newest versions of everything
 	$(MAKE) --no-print-directory VENV=.venv-newest PINS= test
+
+mutation: $(VENV)/.test           ## does a test fail for every wrong decision? MODULES="flexbase.sampled.judged ..."
+	$(BIN)/python tests/mutation/run.py $(MODULES)
 
 lock:                             ## after `test-newest`: what it tested is what is tested from now on
 	{ head -1 requirements/tested.txt; .venv-newest/bin/python -m pip freeze --exclude-editable; } > out/tested.txt
