@@ -140,7 +140,8 @@ def test_a_region_asks_for_both_margins_and_all_robots(
 ) -> None:
     monkeypatch.setattr(regions, "judged", lambda *_: told)
     controller = fb.make_controller(paper_pose, "none", FAST)
-    assert regions._grade(regions._Cell(controller, None, tuple(paper_pose.tip.tolist()), "+")) == code
+    _, (found,) = regions.Grade(controller, None)(paper_pose)
+    assert found == code
 
 
 def test_a_safe_gain_survives_the_changed_robots(paper_pose: fb.Pose, monkeypatch: pytest.MonkeyPatch) -> None:
