@@ -11,13 +11,29 @@ import flexbase
 from flexbase import Plant
 from flexbase.dynamics.inverse.arm_angles import arm_angles_of_many
 from flexbase.dynamics.inverse.newton import TipProblem, rotation_vector_slope
-from flexbase.dynamics.inverse.posture_criteria import by_differences, isotropy
+from flexbase.dynamics.inverse.posture_criteria import isotropy
 from flexbase.dynamics.inverse.self_motion import best_posture
 from flexbase.model.task import Task
 from systems.planar import planar
 
 LENGTHS = [0.1, 0.3, 0.25, 0.2]  # three joints for x and y: one turn of freedom
 ROBOTS = ["ur5e-pedestal", "panda-pedestal", "iiwa-platform"]
+
+
+def by_differences(value, step=1e-5):
+    """A criterion from values alone: central differences of rows (S, n) -> (S,). Error of the gradient: step^2.
+
+    step : rad or m, the same for all joints
+    """
+
+    def criterion(joints):
+        n = joints.shape[1]
+        moves = step * np.concatenate([np.zeros((1, n)), np.eye(n), -np.eye(n)])
+        rows = (joints + moves[:, None, :]).reshape(-1, n)
+        values = np.asarray(value(rows)).reshape(2 * n + 1, len(joints))
+        return values[0], ((values[1 : n + 1] - values[n + 1 :]) / (2.0 * step)).T
+
+    return criterion
 
 
 def parts(plant):

@@ -10,7 +10,8 @@ from scipy.signal import cont2discrete
 
 import flexbase as fb
 from flexbase.errors import Infeasible
-from flexbase.linear.discrete.coprime import coprime_controller, coprime_margin
+from flexbase.linear.discrete.coprime import coprime_controller
+from flexbase.linear.discrete.disk_margin import grid_of
 from flexbase.linear.discrete.system import Discrete, feedback, spectral_radius
 from flexbase.linear.discrete.tustin import balanced_truncation, to_continuous, to_discrete
 from flexbase.model.sensing import Sensing
@@ -19,6 +20,27 @@ from flexbase.sampled.verdict import hardware_verdict
 from flexbase.synthesis import controller_for
 from flexbase.synthesis.methods.coprime import coprime_at
 from flexbase.synthesis.search.shaping import design_plant, task_shape
+
+
+def coprime_margin(plant: Discrete, controller: Discrete) -> float:
+    """b = 1 / max over frequency of |[K; I] (I - P K)^-1 [I, P]|, by a sweep of the closed loop; 0 if it is unstable.
+
+    Assumes u = K y. Taken on the grid of `disk_margin`: an upper bound, short of the truth by the grid alone.
+    """
+    loop = feedback(plant, controller)
+    if float(np.abs(np.linalg.eigvals(loop.A)).max(initial=0.0)) >= 1.0:
+        return 0.0
+    frequencies = grid_of(loop)
+    P, K = plant.transfer_function(frequencies), controller.transfer_function(frequencies)
+    return float(1.0 / _four_blocks(P, K).max())
+
+
+def _four_blocks(P: np.ndarray, K: np.ndarray) -> np.ndarray:
+    eye = np.eye(P.shape[1])
+    loop = np.linalg.inv(eye - P @ K)  # regular: a stable loop has no pole on the unit circle
+    left = np.concatenate([K, np.broadcast_to(eye, (len(P), *eye.shape))], axis=1)
+    right = np.concatenate([np.broadcast_to(eye, (len(P), *eye.shape)), P], axis=2)
+    return np.asarray(np.linalg.norm(left @ loop @ right, 2, axis=(1, 2)))
 
 
 def random_plant(seed: int, states: int = 5, inputs: int = 2, outputs: int = 3) -> Discrete:

@@ -17,22 +17,6 @@ Criterion = Callable[[Array], tuple[Array, Array]]
 """Rows of arm joints, shape (S, n), to values, shape (S,), and gradients, shape (S, n). -inf or NaN: never taken."""
 
 
-def by_differences(value: Callable[[Array], Array], step: float = 1e-5) -> Criterion:
-    """A criterion from values alone: central differences of rows (S, n) -> (S,). Error of the gradient: step^2.
-
-    step : rad or m, the same for all joints
-    """
-
-    def criterion(joints: Array) -> tuple[Array, Array]:
-        n = joints.shape[1]
-        moves = step * np.concatenate([np.zeros((1, n)), np.eye(n), -np.eye(n)])
-        rows = (joints + moves[:, None, :]).reshape(-1, n)
-        values = np.asarray(value(rows)).reshape(2 * n + 1, len(joints))
-        return values[0], ((values[1 : n + 1] - values[n + 1 :]) / (2.0 * step)).T
-
-    return criterion
-
-
 def isotropy(mechanism: Mechanism, task: Task, base_rest: Array) -> Criterion:
     """Logarithm of the geometric over the arithmetic mean of the eigenvalues of Jv Jv^T, with its gradient.  [K91]
 

@@ -8,10 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexbase.checks import Array
 from flexbase.linear.discrete import riccati
-from flexbase.linear.discrete.disk_margin import grid_of
-from flexbase.linear.discrete.system import Discrete, feedback
+from flexbase.linear.discrete.system import Discrete
 from flexbase.linear.discrete.tustin import to_continuous, to_discrete
 from flexbase.linear.second_order import StateSpace
 
@@ -38,24 +36,3 @@ def coprime_controller(plant: Discrete, factor: float = 1.1) -> tuple[Discrete, 
     gain = gamma**2 * np.linalg.solve(W.T, Z @ C.T)
     controller = StateSpace(np.asarray(A + B @ F + gain @ (C + D @ F)), np.asarray(gain), B.T @ X, -D.T)
     return to_discrete(controller, plant.step), b_opt
-
-
-def coprime_margin(plant: Discrete, controller: Discrete) -> float:
-    """b = 1 / max over frequency of |[K; I] (I - P K)^-1 [I, P]|, by a sweep of the closed loop; 0 if it is unstable.
-
-    Assumes u = K y. Taken on the grid of `disk_margin`: an upper bound, short of the truth by the grid alone.
-    """
-    loop = feedback(plant, controller)
-    if float(np.abs(np.linalg.eigvals(loop.A)).max(initial=0.0)) >= 1.0:
-        return 0.0
-    frequencies = grid_of(loop)
-    P, K = plant.transfer_function(frequencies), controller.transfer_function(frequencies)
-    return float(1.0 / _four_blocks(P, K).max())
-
-
-def _four_blocks(P: np.ndarray, K: np.ndarray) -> Array:
-    eye = np.eye(P.shape[1])
-    loop = np.linalg.inv(eye - P @ K)  # regular: a stable loop has no pole on the unit circle
-    left = np.concatenate([K, np.broadcast_to(eye, (len(P), *eye.shape))], axis=1)
-    right = np.concatenate([np.broadcast_to(eye, (len(P), *eye.shape)), P], axis=2)
-    return np.asarray(np.linalg.norm(left @ loop @ right, 2, axis=(1, 2)))

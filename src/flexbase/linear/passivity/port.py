@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexbase.checks import Array, finite_array
-from flexbase.errors import InputError
+from flexbase.checks import Array
 
 NOISE = 1e-11  # of the largest direction of [C, B^T, D]: what is below is rounding, and left out
 SPREAD = np.array([-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0])  # seeds around a pole, in damping ratios  [theory §5]
@@ -54,27 +53,6 @@ class Port:
         poles = poles[np.abs(poles) > 0.0]
         found = (np.abs(poles)[:, None] - poles.real[:, None] * SPREAD).ravel()
         return np.unique(found[found > 0.0])
-
-
-def state_port(A: Array, B: Array, C: np.ndarray, D: Array | None = None) -> Port:
-    """The port of a state space. Raises InputError where A is not stable or the shapes do not fit."""
-    A, B = finite_array("A", A), finite_array("B", B)
-    k = B.shape[-1]
-    D = np.zeros((k, k)) if D is None else finite_array("D", D)
-    if A.shape != (len(B), len(B)) or np.shape(C) != (k, len(B)) or D.shape != (k, k):
-        raise InputError(
-            f"state space: A {A.shape}, B {B.shape}, C {np.shape(C)}, D {D.shape} do not fit. Give as many outputs as "
-            "inputs."
-        )
-    if len(A) and (fastest := float(np.linalg.eigvals(A).real.max())) >= 0.0:
-        raise InputError(f"state space: a pole has real part {fastest:.3g}. Give a stable system.")
-
-    def response(omega: Array) -> np.ndarray:
-        s = 1j * np.asarray(omega)[..., None, None]
-        moved = np.linalg.solve(s * np.eye(len(A)) - A, np.broadcast_to(B + 0j, (*np.shape(omega), *B.shape)))
-        return np.asarray(C @ moved + D)
-
-    return compressed(Port(A, B, C, D, response, k))
 
 
 def compressed(port: Port) -> Port:
