@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-Report = Callable[[str, int, int], None]
+from flexbase.requests import Progress as Report
+from flexbase.requests import no_progress
 
 
 @contextmanager
 def progress_bar(plain_lines: bool = False) -> Iterator[Report]:
     """A function (what, done, total) that moves the bar; off a terminal it is silent, or prints a line a tenth."""
     if not sys.stderr.isatty():
-        yield _lines() if plain_lines else lambda _what, _done, _total: None
+        yield _lines() if plain_lines else no_progress
         return
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=Console(file=sys.stderr), transient=True) as bar:

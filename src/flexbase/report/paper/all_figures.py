@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from flexbase.report import paper as panels
 from flexbase.report.paper import numbers_behind as numbers
 from flexbase.report.save import make_folder, save_csv, save_figure, save_text
+from flexbase.requests import Progress, no_progress
 from flexbase.study.paper import (
     PaperTable,
     compare,
@@ -30,7 +31,7 @@ PANELS = (
 HEADER = ("quantity", "paper", "ours", "difference", "remark")
 
 
-def reproduce(folder: Path, progress: Callable[[str, int, int], None] = lambda doing, done, total: None) -> PaperTable:
+def reproduce(folder: Path, progress: Progress = no_progress) -> PaperTable:
     """Compute everything, then write `fig*.png`, `fig*.svg`, `fig*.csv`, `table.md` and `table.csv` into a folder.
 
     progress : called with what is being done, the steps done and all steps
@@ -49,7 +50,7 @@ def reproduce(folder: Path, progress: Callable[[str, int, int], None] = lambda d
     )
     step("simulating the move")
     settled = settling(case.plant, shaped.recursion)
-    field = ellipse_field(case.plant, progress=lambda done, total: step(f"ellipse {done + 1} of {total}"))
+    field = ellipse_field(case.plant, progress=lambda what, done, total: step(f"{what} {done + 1} of {total}"))
     jobs: dict[str, tuple[Callable[[], Figure], numbers.Numbers]] = {
         "fig05": (lambda: panels.configuration(case), numbers.configuration(case)),
         "fig06a": (lambda: panels.surface(without), numbers.robustness(without)),
@@ -81,7 +82,7 @@ def reproduce(folder: Path, progress: Callable[[str, int, int], None] = lambda d
 class _Steps:
     """Counts steps for a progress callback: a call says what begins, and that the one before is done."""
 
-    def __init__(self, progress: Callable[[str, int, int], None], total: int) -> None:
+    def __init__(self, progress: Progress, total: int) -> None:
         self.progress, self.total, self.done = progress, total, -1
 
     def __call__(self, doing: str) -> None:

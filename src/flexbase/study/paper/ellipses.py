@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,6 +17,7 @@ from flexbase.linear.modal import modes
 from flexbase.measures.manipulability import Manipulability, manipulability
 from flexbase.model.loop import Gain
 from flexbase.plant import Plant, Pose
+from flexbase.requests import Progress, no_progress
 from flexbase.study.paper.example import DESIGN_TIP
 
 SPACING = 0.14  # m, between ellipses; the grid passes through the paper's design point
@@ -121,14 +121,12 @@ def ellipse_cell(plant: Plant, tip: tuple[float, float]) -> EllipseCell:
     )
 
 
-def ellipse_field(
-    plant: Plant, spacing: float = SPACING, progress: Callable[[int, int], None] = lambda done, total: None
-) -> EllipseField:
-    """All cells; `progress` is called before each with the cells done and all cells."""
+def ellipse_field(plant: Plant, spacing: float = SPACING, progress: Progress = no_progress) -> EllipseField:
+    """All cells; `progress` is called before each with "ellipse", the cells done and all cells."""
     tips = ellipse_tips(plant, spacing)
     cells: list[EllipseCell] = []
     for tip in tips:
-        progress(len(cells), len(tips))
+        progress("ellipse", len(cells), len(tips))
         cells.append(ellipse_cell(plant, tip))
     return EllipseField(tuple(cells))
 

@@ -1,1 +1,1 @@
-"""What is made of a sweep's answer: summaries, differences, charts."""
+"""What is made of an answer: summaries, tables, files, differences, charts."""

@@ -1,1 +1,1 @@
-"""Inputs to answers: the question, its evaluation, and who runs the blocks."""
+"""Questions (a formula, or asked pose by pose), the one runner of them, and who runs its blocks."""

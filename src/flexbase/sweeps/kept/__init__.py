@@ -1,1 +1,1 @@
-"""Sweeps on disk: arrays, recipe, store, and reading them back."""
+"""Answers as arrays, in memory or on disk: layout, recipe, store, and reading them back."""
