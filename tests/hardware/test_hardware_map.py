@@ -95,6 +95,8 @@ def test_stopped_and_gone_on_with(paper: fb.Plant, tmp_path: Path, monkeypatch: 
 def test_what_a_map_of_verdicts_cannot_vary(paper: fb.Plant, cells: object, said: str) -> None:
     with pytest.raises(InputError, match=said):
         hardware_map(paper, "none", cells)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="engine: poses are asked one by one"):
+        hardware_map(paper, execution=fb.Execution(engine="rows"))
 
 
 def test_a_path_s_table_tells_every_figure(paper: fb.Plant) -> None:

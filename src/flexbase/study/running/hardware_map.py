@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flexbase.cautions import collected
 from flexbase.checks import Array, check_left_out, choose
 from flexbase.errors import FlexbaseError, InputError
 from flexbase.model.loop import Asked, LoopSpec, loop_on
@@ -20,7 +21,7 @@ from flexbase.sampled.figures import FIGURES
 from flexbase.sampled.judged import judged
 from flexbase.sweeps.cells.axis import block_shape
 from flexbase.sweeps.cells.grids import tip_place
-from flexbase.sweeps.engine.poses import EachPose
+from flexbase.sweeps.engine.poses import EachPose, by_processes
 from flexbase.sweeps.engine.question import MEASURED, Column
 from flexbase.sweeps.engine.runner import run
 from flexbase.sweeps.engine.status import INFEASIBLE, OK, UNSTABLE
@@ -88,8 +89,9 @@ def hardware_map(
     cells : over tip, 50 x 50 if no shape is given; execution : in processes, one a core if left out
     Raises InputError.
     """
-    cells, execution = _over_tips(cells).shaped(USUAL_SHAPE), Execution.checked(execution)
-    question, meant = question_of(plant, method, loop, cells.branch)
+    cells, execution = _over_tips(cells).shaped(USUAL_SHAPE), by_processes(execution)
+    with collected() as said:
+        question, meant = question_of(plant, method, loop, cells.branch)
     place = tip_place(plant, cells, targets=True)
     block = block_shape(place.domain.shape, BLOCK)
     recipe = recipe_of(question, plant.arm, place, cells.branch or plant.arm.task.branch, block)
@@ -98,6 +100,7 @@ def hardware_map(
         "compensated": int(meant.E is not None),
         "judged": judged_by(method, meant),
         "over": TIP,
+        "cautions": "\n".join(said),
     }
     return run(question, place.domain, block, execution, progress, attributes, recipe)
 

@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from flexbase.checks import Array, positive_number
+from flexbase.checks import Array, check_left_out, positive_number
 from flexbase.errors import InputError, SingularArm, Unreachable
 from flexbase.model.loop import Asked, loop_on
 from flexbase.model.task import BRANCHES, Gains
@@ -21,7 +21,7 @@ from flexbase.sheets.sheet import Sheet, answer, facts, make_sheet
 from flexbase.sheets.told import Told
 from flexbase.sweeps.cells.axis import block_shape
 from flexbase.sweeps.cells.grids import tip_place
-from flexbase.sweeps.engine.poses import EachPose
+from flexbase.sweeps.engine.poses import EachPose, by_processes
 from flexbase.sweeps.engine.question import Column
 from flexbase.sweeps.engine.runner import run
 from flexbase.sweeps.engine.status import OK
@@ -126,6 +126,7 @@ def region(
     else:
         controller = make_controller(pose, method, loop)
         kept = meant.gains if method is None or HARDWARE_METHODS[method].law == "gains" else None
+    check_left_out(by_processes(execution), ("store", "resume"), "a region is kept in memory. Leave it out.")
     half = positive_number("half_width", half_width, "m or rad")
     rows, units = pose.arm.task.rows, pose.arm.task.units
     if pose.arm.k < 2 or len(shape) != 2 or min(shape) < 2:
@@ -138,7 +139,7 @@ def region(
     near = pose.joints
     question = EachPose(pose.plant, (Column("grade", {"units": "1"}),), grade_of, branch, near)
     block = block_shape(place.domain.shape, BLOCK)
-    found = run(question, place.domain, block, Execution.checked(execution), progress, {})
+    found = run(question, place.domain, block, execution, progress, {})
     grade = np.where(found["status"].values == OK, found["grade"].values, OUT_OF_REACH).astype(np.int8)
     y, x = (axis.values for axis in place.domain.axes)
     distance = np.hypot(x[None, :] - tip[0], y[:, None] - tip[1])

@@ -8,11 +8,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flexbase.checks import Array
+from flexbase.checks import Array, check_left_out
 from flexbase.errors import SingularArm, Unreachable
 from flexbase.plant import Plant, Pose
 from flexbase.sweeps.engine.question import Block, Column
 from flexbase.sweeps.engine.status import SINGULAR, UNREACHABLE, VERDICTS
+from flexbase.sweeps.requests import Execution
 
 Ask = Callable[[Pose], tuple[int, Sequence[float]]]
 
@@ -49,3 +50,9 @@ class EachPose:
                 status[i], found = self.ask(pose)
                 values[: len(found), i] = found
         return Block({one.name: row for one, row in zip(self.columns, values, strict=True)}, status)
+
+
+def by_processes(execution: Execution) -> Execution:
+    """An execution that suits such a question, checked. Raises InputError."""
+    check_left_out(Execution.checked(execution), ("engine",), "poses are asked one by one, by no engine. Leave it out.")
+    return execution
