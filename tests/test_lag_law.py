@@ -13,7 +13,7 @@ import flexbase as fb
 from flexbase import FlexbaseWarning, Infeasible, InputError
 from flexbase.compensators.judge.lag_law import LagLaw, lag_limit, obeys
 from flexbase.compensators.methods.exact import reachable
-from flexbase.compensators.methods.exact_redundant import BORDER, lagged_bands
+from flexbase.compensators.search.exact_redundant import BORDER, lagged_bands
 from systems.lagged import dampings, law
 from systems.oracle import FullSystem
 from systems.passivity import loop_radius

@@ -10,6 +10,7 @@ import importlib
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from pkgutil import iter_modules
 from types import ModuleType
 
 
@@ -52,6 +53,12 @@ def import_extra(module: str, extra: str) -> ModuleType:
     except ImportError as missing:
         message = f'{module} is not installed. Install it with: pip install "flexbase[{extra}]"'
         raise MissingExtra(message) from missing
+
+
+def import_all(package: ModuleType) -> None:
+    """Import every module of a package, so that what they register is known."""
+    for module in iter_modules(package.__path__):
+        importlib.import_module(f"{package.__name__}.{module.name}")
 
 
 @contextmanager

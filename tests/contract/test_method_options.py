@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from importlib import import_module
 from inspect import Parameter, signature
+from pkgutil import iter_modules
 from typing import Any
 
 import numpy as np
@@ -132,3 +134,13 @@ def test_a_new_controller_brings_its_option_to_the_command_line() -> None:
     )
     answers = [program(*move, "--method", "damped", *more, "--json") for more in ([], ["--viscosity", "30"])]
     assert answers[0] != answers[1]
+
+
+@pytest.mark.parametrize("room", ["measures", "compensators.methods", "synthesis.methods"])
+def test_a_file_in_the_room_is_enough(room: str) -> None:
+    """Every file there has registered something, without a list of them anywhere."""
+    files = {one.name for one in iter_modules(import_module(f"flexbase.{room}").__path__)} - {"registry"}
+    registered = [*(one.run for one in (*fb.MEASURES.values(), *fb.METHODS.values()))]
+    registered += [one.make for one in fb.HARDWARE_METHODS.values()]
+    homes = {run.__module__.rpartition(".")[2] for run in registered if room in run.__module__}
+    assert homes == files

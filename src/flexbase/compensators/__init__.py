@@ -1,6 +1,9 @@
-"""Design methods, one file each; importing them fills the registry."""
+"""Design of compensators; every file in `methods` fills the registry."""
 
-from flexbase.compensators.methods import bounded, convex, exact, recursive, task_priority
+from flexbase.compensators import methods
 from flexbase.compensators.registry import METHODS, Method, design
+from flexbase.errors import import_all
 
-__all__ = ["METHODS", "Method", "bounded", "convex", "design", "exact", "recursive", "task_priority"]
+import_all(methods)
+
+__all__ = ["METHODS", "Method", "design"]

@@ -1,33 +1,10 @@
-"""Measures of a configuration, one file each; importing them fills the registry."""
+"""Measures of a configuration; every file here fills the registry."""
 
-from flexbase.measures import (
-    algebraic_loop,
-    alignment,
-    compensability,
-    exact_design,
-    frequency,
-    manipulability,
-    passivity_shortage,
-    robustness,
-    shortage,
-    task_loop,
-    turn,
-)
+import sys
+
+from flexbase.errors import import_all
 from flexbase.measures.registry import MEASURES, Configuration, Measure
 
-__all__ = [
-    "MEASURES",
-    "Configuration",
-    "Measure",
-    "algebraic_loop",
-    "alignment",
-    "compensability",
-    "exact_design",
-    "frequency",
-    "manipulability",
-    "passivity_shortage",
-    "robustness",
-    "shortage",
-    "task_loop",
-    "turn",
-]
+import_all(sys.modules[__name__])
+
+__all__ = ["MEASURES", "Configuration", "Measure"]

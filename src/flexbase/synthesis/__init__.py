@@ -1,18 +1,9 @@
-"""Controllers for the loop as it runs, one file a method; importing them fills the registry."""
+"""Controllers for the loop as it runs; every file in `methods` fills the registry."""
 
-from flexbase.synthesis.methods import compensated, constant, coprime, deflection, lqg, notch, robust, sampled, viscous
+from flexbase.errors import import_all
+from flexbase.synthesis import methods
 from flexbase.synthesis.registry import HARDWARE_METHODS, controller_for
 
-__all__ = [
-    "HARDWARE_METHODS",
-    "compensated",
-    "constant",
-    "controller_for",
-    "coprime",
-    "deflection",
-    "lqg",
-    "notch",
-    "robust",
-    "sampled",
-    "viscous",
-]
+import_all(methods)
+
+__all__ = ["HARDWARE_METHODS", "controller_for"]

@@ -9,9 +9,9 @@ import numpy as np
 from flexbase.checks import Array, positive_number
 from flexbase.compensators.judge.certificate import certify
 from flexbase.compensators.judge.lag_law import SHARE, LagLaw, check_obeyed, checked_law, fastest, words
-from flexbase.compensators.methods.exact_redundant import freest, lagged_bands, within
 from flexbase.compensators.options import Lag, LagShare, Wanted
 from flexbase.compensators.registry import method
+from flexbase.compensators.search.exact_redundant import freest, lagged_bands, within
 from flexbase.control.compensator import Compensator
 from flexbase.errors import Infeasible, InputError
 from flexbase.linear.aligned_gain import least_gain

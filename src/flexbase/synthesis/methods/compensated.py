@@ -5,9 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 from flexbase.checks import Array
-from flexbase.compensators.methods.convex import convex
-from flexbase.compensators.methods.exact import exact
-from flexbase.compensators.methods.recursive import recursive
+from flexbase.compensators import design
 from flexbase.errors import Infeasible
 from flexbase.linear.modal import modes
 from flexbase.model.sensing import Sensing
@@ -26,39 +24,29 @@ def none(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
 
 
 @hardware_method("recursive", "the paper's 800 iterations on measured accelerations", law="gains")
-def recursive_gain(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
-    """Task PD with the recursion's E. Raises Infeasible where it does not converge."""
-    return pd_with_gain(pose, sensing, gains, _recursive_gain(pose), "recursive")
+def recursive(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
+    """Task PD with the recursion's E, 100 rad/s up. Raises Infeasible where it does not converge."""
+    return pd_with_gain(pose, sensing, gains, _gain(pose, "recursive", _wanted(pose)), "recursive")
 
 
 @hardware_method("exact", "the exact least gain on measured accelerations", law="gains")
-def exact_gain(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
+def exact(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
     """Task PD with the exact E at a frequency 100 rad/s up. Raises Infeasible where there is none."""
-    return pd_with_gain(pose, sensing, gains, _exact_gain(pose), "exact")
+    return pd_with_gain(pose, sensing, gains, _gain(pose, "exact", _wanted(pose)), "exact")
 
 
 @hardware_method(
     "convex", "the convex design's gain on measured accelerations, for any number of base joints", law="gains"
 )
-def convex_gain(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
-    """Task PD with the E of `convex`. Raises Infeasible where there is none."""
-    return pd_with_gain(pose, sensing, gains, _convex_gain(pose), "convex")
+def convex(pose: Pose, sensing: Sensing, gains: Gains) -> SampledController:
+    """Task PD with the E of the design method `convex`. Raises Infeasible where there is none."""
+    return pd_with_gain(pose, sensing, gains, _gain(pose, "convex"), "convex")
 
 
-@lru_cache(maxsize=8)
-def _convex_gain(pose: Pose) -> Array:
-    return convex(pose).E
-
-
-@lru_cache(maxsize=8)
-def _recursive_gain(pose: Pose) -> Array:
+@lru_cache(maxsize=24)
+def _gain(pose: Pose, method: str, natural_frequency: float | None = None) -> Array:
     """E depends on the pose alone, and studies ask for it at several rates."""
-    return recursive(pose, natural_frequency=_wanted(pose)).E
-
-
-@lru_cache(maxsize=8)
-def _exact_gain(pose: Pose) -> Array:
-    return exact(pose, natural_frequency=_wanted(pose)).E
+    return design(pose, method, natural_frequency=natural_frequency).E
 
 
 def _wanted(pose: Pose) -> float:
