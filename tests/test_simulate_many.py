@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -150,7 +151,7 @@ def test_bad_runs_have_a_status_and_spoil_no_neighbour(paper, paper_pose, compen
     assert np.isnan(runs.peak_error_m[0])
     assert np.isnan(runs.settling_time_s[0])
     np.testing.assert_allclose(runs.q[1], alone.q[0], rtol=0.0, atol=CLOSE)
-    assert "M - E not positive definite: 1" in runs.summary()
+    assert re.search(r"M - E not positive definite +1$", runs.summary(), re.MULTILINE)
     assert runs.to_dict()["peak_error_m"][0] is None
 
 

@@ -7,7 +7,7 @@ import shlex
 import subprocess
 import sys
 from pathlib import Path
-from types import ModuleType, SimpleNamespace
+from types import ModuleType
 
 import pytest
 
@@ -15,6 +15,7 @@ import flexbase
 from flexbase.cli import main as program
 from flexbase.cli.commands import modes as modes_command
 from flexbase.errors import MissingExtra
+from flexbase.study.paper.table import PaperRow, PaperTable
 
 from .conftest import TIP, Call
 
@@ -137,11 +138,11 @@ def _raise(monkeypatch: pytest.MonkeyPatch, fault: BaseException) -> None:
 def test_reproduce_shows_the_table(call: Call, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     asked = []
 
-    def reproduce(folder: Path, progress: object) -> SimpleNamespace:
+    def reproduce(folder: Path, progress: object) -> PaperTable:
         asked.append(folder)
         progress("drawing", 1, 2)  # type: ignore[operator]
-        rows = [("w_1", "-0.07", "-0.0708", "-0.0008", "read off"), ("omega_1", "300", "277", "-23", "read off")]
-        return SimpleNamespace(summary_rows=lambda: rows, to_dict=lambda: {"rows": [{"ours": float("nan")}]})
+        rows = PaperRow("w_1", -0.07, -0.0708, remark="read off"), PaperRow("omega_1", 300.0, 277.0, 0, "read off")
+        return PaperTable((*rows, PaperRow("lost", None, float("nan"))))
 
     stub = ModuleType("flexbase.report.paper.all_figures")
     stub.reproduce = reproduce  # type: ignore[attr-defined]
@@ -152,7 +153,7 @@ def test_reproduce_shows_the_table(call: Call, monkeypatch: pytest.MonkeyPatch, 
     assert "drawing" in shown.err
     assert all(word in shown.out for word in ("quantity", "paper", "ours", "difference", "-0.0708", "277"))
     assert shown.out.count("read off") == 1
-    assert call("reproduce", "--json").document("reproduce") == {"rows": [{"ours": None}]}
+    assert [row["ours"] for row in call("reproduce", "--json").document("reproduce")["rows"]] == [-0.0708, 277.0, None]
 
 
 def test_as_a_process() -> None:

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 import flexbase as fb
+from flexbase.cautions import collected
 from flexbase.sheets.told import Told
 from flexbase.study.agreement.case import Outcome, draw_case
+from flexbase.study.paper.table import PaperRow, PaperTable
 from systems.planar import PAPER_TIP
 
 if TYPE_CHECKING:
@@ -32,6 +37,19 @@ def pose() -> fb.Pose:
 def compensator() -> fb.Compensator:
     """Made for that pose."""
     return fb.design(pose(), "exact")
+
+
+def wide() -> fb.Pose:
+    """Six joints."""
+    return fb.load("ur5e-pedestal").at_tip([0.72, -0.35, 1.3], "-+-")
+
+
+def wide_compensator() -> fb.Compensator:
+    """Made there, without task gains and with a caution."""
+    with collected(quietly=True):
+        found = fb.design(wide(), "convex")
+    proof = replace(found.certificate, closed_loop_abscissa=None, lag_limit_s=None, warnings=("beware of <b>",))
+    return replace(found, certificate=proof)
 
 
 def controller(method: str) -> fb.SampledController:
@@ -73,6 +91,31 @@ DATASETS: dict[str, Callable[[], xarray.Dataset]] = {
     "difference": lambda: fb.difference(map_of(), map_of(compensator())),
     "hardware map": lambda: fb.hardware_map(paper(), "none", SMALL, execution=fb.Execution(workers=1)),
 }
+
+
+def run() -> fb.Run:
+    """From one tip to the pose."""
+    return fb.simulate(paper(), paper().at_tip([0.33, 0.25]), pose(), move=fb.Move(switch=0.05, end=0.1))
+
+
+def sampled_run(method: str) -> fb.SampledRun:
+    """Pushed at the pose."""
+    return fb.simulate_sampled(controller(method), push=fb.Push((50.0, 0.0), 0.05, 0.01), move=fb.SampledMove(end=0.2))
+
+
+def runs(*stiffness: float) -> fb.Runs:
+    """The same move with other base springs."""
+    here = paper().at_tip([0.33, 0.25])
+    return fb.simulate_many(paper(), here, pose(), vary={"stiffness": stiffness})
+
+
+def no_points() -> fb.RobustPoints:
+    """As where no sample arrives."""
+    some, none = fb.robust_points(paper(), count=1), np.empty(0)
+    arrays = {name: none.reshape(0, getattr(some, name).shape[1]) for name in ("joints", "tip", "alignment")}
+    return replace(some, **arrays, distance=none, nearest=0.98)
+
+
 EXAMPLES: dict[str, Callable[[], Told]] = {
     "modes": lambda: fb.modes(pose()),
     "modes, compensated": lambda: fb.modes(pose(), compensator()),
@@ -81,6 +124,20 @@ EXAMPLES: dict[str, Callable[[], Told]] = {
     "verdict on a system": lambda: fb.verdict(fb.linearise(pose())),
     "manipulability": lambda: fb.manipulability(pose()),
     "manipulability, compensated": lambda: fb.manipulability(pose(), compensator(), "torque"),
+    "compensator": lambda: compensator(),
+    "compensator of a wide arm": lambda: wide_compensator(),
+    "run": lambda: run(),
+    "sampled run": lambda: sampled_run("coprime"),
+    "sampled run, diverging": lambda: sampled_run("exact"),
+    "runs": lambda: runs(0.9, 1.0),
+    "description": lambda: fb.describe(paper()),
+    "description at a pose": lambda: fb.describe(fb.load("ur5e-pedestal"), wide()),
+    "postures": lambda: fb.postures(paper(), PAPER_TIP),
+    "layout": lambda: fb.layout(paper(), [PAPER_TIP, (0.2, -0.3), (9.0, 9.0)], along=["x"], within=0.1),
+    "robust curves": lambda: fb.robust_curves(paper(), cells=60),
+    "robust points": lambda: fb.robust_points(paper(), count=20),
+    "robust points, none": lambda: no_points(),
+    "paper": lambda: PaperTable((PaperRow("w_1", -0.07, -0.0708, remark="read off"),)),
     "hardware verdict": lambda: fb.hardware_verdict(controller("coprime")),
     "hardware verdict, unstable": lambda: fb.hardware_verdict(controller("exact")),
     "comparison": lambda: fb.compare(pose(), ["none", "exact", "coprime"]),

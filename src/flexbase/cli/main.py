@@ -11,7 +11,7 @@ from cyclopts import App, Group, Parameter
 from flexbase import __version__
 from flexbase.cli.catalogue import COMMANDS
 from flexbase.cli.terminal.faults import one_line_warnings, report, silence_stdout
-from flexbase.cli.terminal.show import Screen
+from flexbase.cli.terminal.screen import Screen
 
 INTERRUPTED, BROKEN_PIPE = 130, 141  # 128 and the number of the signal, as shells have it
 EPILOGUE = """Examples:

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from textwrap import indent
+from typing import Any, ClassVar
 
 import numpy as np
 
 from flexbase.checks import Array, check_symmetric, finite_array
 from flexbase.errors import InputError, writing
+from flexbase.sheets.numbers import listed, matrix, number
+from flexbase.sheets.sheet import Column, Facts, Note, Sheet, Table, answer, facts, make_sheet, table, words
+from flexbase.sheets.told import Told
 
 FORMAT = "flexbase compensator 1"
+IDEAL = "Continuous time, ideal acceleration."
 MEND = "Give a file that `flexbase design --out` or `Compensator.save` wrote."
 
 
@@ -49,14 +54,45 @@ class Certificate:
     statement: str = ""
     warnings: tuple[str, ...] = ()
 
+    def modes(self) -> Table:
+        """A row a mode, before and after."""
+        before = zip(self.robustness_before, self.frequency_before_rad_s, strict=True)
+        after = zip(self.robustness_after, self.frequency_after_rad_s, strict=True)
+        rows = [
+            [str(i), *(number(value) for pair in zip(one, other, strict=True) for value in pair)]
+            for i, (one, other) in enumerate(zip(before, after, strict=True), start=1)
+        ]
+        columns = [Column(f"w {when}", "m/(N s^2)") for when in ("before", "after")]
+        columns += [Column(f"frequency {when}", "rad/s") for when in ("before", "after")]
+        return table([words("mode"), *columns], rows)
+
+    def margins(self) -> Facts:
+        """What the gain costs, and what its loop bears."""
+        lag, limit, loop = self.lag_margin_s, self.lag_limit_s, self.closed_loop_abscissa
+        bears = "no limit to 1 s" if lag is None else f"{number(1e3 * lag, 6)} ms"
+        undefined = "undefined: no task gains"
+        return facts(
+            ("smallest eigenvalue of M - E", number(self.min_eig_modified_inertia, 6)),
+            ("target residual, relative", number(self.target_residual, 3)),
+            ("algebraic-loop radius, one delay", number(self.algebraic_loop_radius, 6)),
+            ("algebraic-loop radius, a delay a joint", number(self.algebraic_loop_radius_per_joint, 6)),
+            ("lag margin of the acceleration signal", undefined if loop is None else bears),
+            (
+                "lag that takes a mode's whole damping",
+                "none within 1 s" if limit is None else f"{number(1e3 * limit, 6)} ms",
+            ),
+            ("closed loop, rightmost pole [1/s]", undefined if loop is None else number(loop, 6)),
+        )
+
 
 @dataclass(frozen=True, eq=False)
-class Compensator:
+class Compensator(Told):
     """tau_a = tau~_a + E q_a'', designed for one arm configuration.  [U03 eq 10]
 
     E : symmetric, shape (n, n) [kg m^2, kg m or kg]
     q : the pose it was designed for, shape (N,)
     history : for recursive methods, a value an iteration of w_1, omega_1 and lambda_min(M - E)
+    unit : of the entries of E
     """
 
     method: str
@@ -65,22 +101,31 @@ class Compensator:
     q: Array
     certificate: Certificate
     history: dict[str, Array] = field(default_factory=dict, repr=False)
+    unit: str = "kg m^2, kg m or kg"
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers."""
-        return {
-            "method": self.method,
-            "robot": self.robot,
-            "E": self.E.tolist(),
-            "q": self.q.tolist(),
-            "certificate": json.loads(json.dumps(asdict(self.certificate))),
-        }
+    document: ClassVar = ("method", "robot", "E", "q", "certificate")
 
-    def summary(self) -> str:
-        """The gain and its certificate in plain text."""
-        rows = "\n".join("      " + "  ".join(f"{entry: .6f}" for entry in row) for row in self.E)
-        facts = "\n".join(f"  {key}: {_shown(value)}" for key, value in asdict(self.certificate).items())
-        return f"{self.robot}, method {self.method}\n  E =\n{rows}\n{facts}"
+    def sheet(self) -> Sheet:
+        """E, the modes before and after, the margins, and whether the task-space loop settles."""
+        proof, said, loop = self.certificate, self.certificate.statement, self.certificate.closed_loop_abscissa
+        loop_is = "The task-space loop is {} here".format
+        return make_sheet(
+            self.robot,
+            f"compensator, method {self.method}, at joints {listed(self.q)}",
+            self._gain(),
+            proof.modes(),
+            proof.margins(),
+            Note(f"{said[0].upper()}{said[1:]}") if said else None,
+            None if loop is None else answer(loop < 0.0, loop_is("stable"), loop_is("unstable"), IDEAL),
+            cautions=proof.warnings,
+        )
+
+    def _gain(self) -> Facts | Note:
+        """E beside its name, or below it where it is wide."""
+        if len(self.E) <= 4:
+            return facts((f"E [{self.unit}]", matrix(self.E)))
+        head = f"E [{self.unit}], three digits; all of them in the JSON document and file"
+        return Note(f"{head}\n{indent(matrix(self.E), '  ')}")
 
     def save(self, path: str | Path) -> None:
         """Write as JSON. Raises InputError where the place cannot be written."""
@@ -117,11 +162,3 @@ def load_compensator(path: str | Path) -> Compensator:
         )
     except (KeyError, TypeError, AttributeError) as fault:
         raise InputError(f"{path}: a compensator whose entries are missing or unknown. {MEND}") from fault
-
-
-def _shown(value: Any) -> str:
-    if value is None:
-        return "none"
-    if isinstance(value, tuple):
-        return "\n    ".join(value) if value and isinstance(value[0], str) else ", ".join(map(_shown, value)) or "none"
-    return value if isinstance(value, str) else f"{value:.6g}"

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flexbase.checks import Array
 from flexbase.plant import Pose
+from flexbase.sheets import units
+from flexbase.sheets.numbers import number
+from flexbase.sheets.sheet import Column, Sheet, answer, facts, make_sheet, table, words
+from flexbase.sheets.told import Told
 from flexbase.simulation.settling import SETTLED, error_sizes
 
 
 @dataclass(frozen=True, eq=False)
-class Run:
+class Run(Told):
     """A move and a settling phase, sampled at equal intervals.
 
     t : shape (T,) [s]; q, rates : shape (T, N); tip_error : against the goal, shape (T, k)
@@ -39,6 +43,24 @@ class Run:
     stopped: str | None = None
     engine: str = "builtin"
     cautions: tuple[str, ...] = ()
+
+    document: ClassVar = (
+        "t",
+        "q",
+        "tip_error",
+        "torque",
+        "switch_s=switch",
+        "compensated",
+        "engine",
+        "settled",
+        "settling_time_s",
+        "peak_error_m",
+        "peak_torque",
+        "peak_speed",
+        "closed_loop_abscissa",
+        "caution",
+        "stopped",
+    )
 
     @property
     def settling(self) -> NDArray[np.bool_]:
@@ -89,37 +111,28 @@ class Run:
             "a longer run would grow."
         )
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers, with units in the names."""
-        return {
-            "t": self.t.tolist(),
-            "q": self.q.tolist(),
-            "tip_error": self.tip_error.tolist(),
-            "torque": self.torque.tolist(),
-            "switch_s": self.switch,
-            "compensated": self.compensated,
-            "engine": self.engine,
-            "settled": self.settled,
-            "settling_time_s": self.settling_time_s,
-            "peak_error_m": self.peak_error_m,
-            "peak_torque": self.peak_torque.tolist(),
-            "peak_speed": self.peak_speed.tolist(),
-            "closed_loop_abscissa": self.closed_loop_abscissa,
-            "caution": self.caution,
-            "stopped": self.stopped,
-        }
-
-    def summary(self) -> str:
-        """A few lines in plain text."""
-        if self.settling_time_s is None:
-            verdict = f"does not settle below {1e3 * SETTLED:g} mm" + (f": {self.stopped}" if self.stopped else "")
-        else:
-            verdict = f"settles below {1e3 * SETTLED:g} mm within {1e3 * self.settling_time_s:.1f} ms of switching"
-        peak = "none" if self.peak_error_m is None else f"{1e3 * self.peak_error_m:.3f} mm"
-        speeds, torques = np.round(self.peak_speed, 3).tolist(), np.round(self.peak_torque, 2).tolist()
-        return (
-            f"{self.goal.plant.name} {'with' if self.compensated else 'without'} compensator: {verdict}\n"
-            + (f"  caution: {self.caution}\n" if self.caution else "")
-            + f"  peak error after switching {peak}\n"
-            f"  peak torque {torques}, peak speed {speeds}"
+    def sheet(self) -> Sheet:
+        """Peak torques and speeds, times and errors, and whether the tip settles."""
+        arm, time, peak = self.goal.arm, self.settling_time_s, self.peak_error_m
+        torque, speed = (units.each(quantity, arm.joint_units) for quantity in ("effort", "speed"))
+        rows = [
+            [name, f"{number(t, 6)} {t_unit}", f"{number(s, 6)} {s_unit}"]
+            for name, t, t_unit, s, s_unit in zip(
+                arm.joint_names, self.peak_torque, torque, self.peak_speed, speed, strict=True
+            )
+        ]
+        unit = "mm (or mrad)" if "rad" in arm.task.units else "mm"
+        settles = f"below {1e3 * SETTLED:g} mm"
+        return make_sheet(
+            self.goal.plant.name,
+            f"simulated {'with' if self.compensated else 'without'} compensator, switch at {self.switch:g} s",
+            table([words("joint"), Column("peak torque"), Column("peak speed")], rows),
+            facts(
+                ("settling time from the switch", "none" if time is None else f"{number(1e3 * time, 4)} ms"),
+                ("largest tip error after the switch", "none" if peak is None else f"{number(1e3 * peak, 6)} {unit}"),
+                ("samples", f"{len(self.t)}, to {number(float(self.t[-1]), 6)} s"),
+                ("caution", self.caution) if self.caution else None,
+            ),
+            answer(self.settled, f"Settles {settles}", f"Does not settle {settles}", self.stopped or ""),
+            cautions=self.cautions,
         )

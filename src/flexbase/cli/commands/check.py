@@ -6,9 +6,7 @@ from cyclopts import App
 
 from flexbase.cli.options.common import Json
 from flexbase.cli.options.pose import PoseOptions, Robot
-from flexbase.cli.terminal.description import tables
-from flexbase.cli.terminal.document import document
-from flexbase.cli.terminal.show import put
+from flexbase.cli.terminal.show import show
 from flexbase.plant import load
 from flexbase.study.describe import describe
 
@@ -28,5 +26,4 @@ Exit status: 0 sound, 2 not.""",
 def check(robot: Robot, /, *, pose: PoseOptions = PoseOptions(), json: Json = False) -> None:  # noqa: B008
     """Load a project and show what it says; with --tip or --joints also what holds there."""
     plant = load(robot)
-    found = describe(plant, pose.pose_or_none(plant))
-    put(document("check", found.to_dict())) if json else put(*tables(found))
+    show("check", describe(plant, pose.pose_or_none(plant)), json)

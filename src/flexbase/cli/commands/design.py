@@ -12,16 +12,15 @@ from flexbase.cli.options.gains import GainOptions
 from flexbase.cli.options.method import MethodOptions
 from flexbase.cli.options.pose import PoseOptions, Robot
 from flexbase.cli.options.sensing import SensingOptions
-from flexbase.cli.terminal import screen
-from flexbase.cli.terminal.certificate import tables
 from flexbase.cli.terminal.document import document
-from flexbase.cli.terminal.out import PICTURES, OutFile, check_out, written
-from flexbase.cli.terminal.show import put
+from flexbase.cli.terminal.out import PICTURES, OutFile, check_out
+from flexbase.cli.terminal.screen import put
+from flexbase.cli.terminal.show import say
 from flexbase.compensators import design as design_at
 from flexbase.errors import Infeasible
 from flexbase.model.loop import Loop
 from flexbase.plant import load
-from flexbase.sheets import units
+from flexbase.sheets.sheet import together
 from flexbase.study.running.as_it_runs import as_it_runs
 
 app = App(
@@ -62,13 +61,9 @@ def design(
             raise
         put(document("design", {"infeasible": str(reason)}))
         return 1
-    kinds = plant.arm.joint_units
     if out is not None:
         found.save(out)
     real = as_it_runs(at, Loop(found, gains, sensing))
-    if json:
-        put(document("design", {**found.to_dict(), "hardware": real and real.to_dict()}))
-    else:
-        put(*tables(found, units.common("inertia", kinds)))
-        screen.put(*(("", real.sheet()) if real else ()), *written(out))
+    sheet = together(found.sheet(), *([] if real is None else [real.sheet()]))
+    say("design", {**found.to_dict(), "hardware": real}, sheet, json, out)
     return 0

@@ -9,11 +9,10 @@ from cyclopts import App, Parameter
 from flexbase.checks import choose
 from flexbase.cli.options.common import CompensatorFile, Json
 from flexbase.cli.options.pose import PoseOptions, Robot, compensator_of
-from flexbase.cli.terminal.out import Out, check_out
+from flexbase.cli.terminal.out import Out, check_out, write_out
 from flexbase.cli.terminal.show import say
 from flexbase.measures.manipulability import CONVENTIONS, manipulability
 from flexbase.plant import load
-from flexbase.sheets.plain import plain
 from flexbase.sheets.sheet import together
 
 app = App(
@@ -49,4 +48,5 @@ def ellipsoid(
     found = {name: manipulability(there, used, name) for name in CONVENTIONS}
     content = {"q": there.q, "tip": there.tip, **found}
     sheet = together(*(found[name].sheet() for name in shown))
-    say("ellipsoid", plain(content), sheet, json, out, found[shown[0]])
+    write_out(out, "ellipsoid", found[shown[0]], content)
+    say("ellipsoid", content, sheet, json, out)

@@ -11,13 +11,12 @@ from flexbase.cli.options.gains import GainOptions
 from flexbase.cli.options.pose import PoseOptions, Robot
 from flexbase.cli.options.sensing import SensingOptions
 from flexbase.cli.options.words import Names, names, number
-from flexbase.cli.terminal.out import OutFile, check_out
+from flexbase.cli.terminal.out import OutFile, check_out, write_out
 from flexbase.cli.terminal.progress import progress_bar
 from flexbase.cli.terminal.show import say
 from flexbase.errors import InputError
 from flexbase.model.loop import Loop
 from flexbase.plant import load
-from flexbase.sheets.plain import plain
 from flexbase.sheets.sheet import together
 from flexbase.study.running.comparison import compare
 from flexbase.study.running.region import region
@@ -65,10 +64,11 @@ def hardware(
         said, drawn = [found.sheet()], None
         if safe_gain_:
             scales = [safe_gain(at, one.method, meant) for one in found.contenders if one.verdict]
-            content["safe_gain"] = plain(scales)
+            content["safe_gain"] = scales
             said.append(sheet_of_gains(scales))
         if region_:
             drawn = region(at, method[0], meant, half_width=half_width, progress=progress)
-            content["region"] = drawn.to_dict()
+            content["region"] = drawn
             said.append(drawn.sheet())
-    say("hardware", content, together(*said), json, out, drawn)
+    write_out(out, "hardware", drawn, content)
+    say("hardware", content, together(*said), json, out)

@@ -10,7 +10,7 @@ from typing import Annotated
 from cyclopts import App, Parameter
 
 from flexbase.cli.terminal.out import write_text
-from flexbase.cli.terminal.show import put
+from flexbase.cli.terminal.screen import put
 from flexbase.errors import InputError
 from flexbase.model.files.schema import ProjectFile
 

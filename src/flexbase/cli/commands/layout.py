@@ -12,10 +12,8 @@ from flexbase.cli.options.elbow import AnyElbow
 from flexbase.cli.options.pose import Robot, compensator_of
 from flexbase.cli.options.words import Names, names
 from flexbase.cli.options.words import number as one_number
-from flexbase.cli.terminal.document import document
-from flexbase.cli.terminal.moved import moved
-from flexbase.cli.terminal.out import Out, check_out, write_out, written
-from flexbase.cli.terminal.show import put
+from flexbase.cli.terminal.out import Out, check_out
+from flexbase.cli.terminal.show import show
 from flexbase.plant import load
 from flexbase.study.layout.best_layout import layout as layout_of
 from flexbase.study.layout.targets import read_targets
@@ -55,7 +53,5 @@ def layout(
     used = compensator_of(plant, compensator)
     given = read_targets(plant.arm.task, targets)
     found = layout_of(plant, given, measure, goal=goal, along=along, turn=turn, within=within, branch=elbow, loop=used)
-    content = found.to_dict()
-    write_out(out, "layout", found, content)
-    put(document("layout", content)) if json else put(*moved(found), *written(out))
+    show("layout", found, json, out)
     return 1 if found.unreachable else 0

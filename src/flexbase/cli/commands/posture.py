@@ -5,19 +5,16 @@ from __future__ import annotations
 from typing import Annotated
 
 from cyclopts import App, Parameter
-from rich.console import RenderableType
 
 from flexbase.cli.options.common import CompensatorFile, Json, blaming, option
 from flexbase.cli.options.elbow import AnyElbow
 from flexbase.cli.options.pose import Robot, compensator_of
 from flexbase.cli.options.words import Vector, numbers
-from flexbase.cli.terminal.document import document
-from flexbase.cli.terminal.out import Out, check_out, write_out, written
-from flexbase.cli.terminal.show import facts, put, table, title
+from flexbase.cli.terminal.out import Out, check_out
+from flexbase.cli.terminal.show import show
 from flexbase.errors import InputError
 from flexbase.plant import load
-from flexbase.sheets.numbers import listed, number
-from flexbase.study.postures.best_postures import Posture, Postures, postures
+from flexbase.study.postures.best_postures import postures
 from flexbase.study.postures.objective import climbable
 
 app = App(
@@ -30,7 +27,6 @@ app = App(
 Of measures with a value for each mode the worst counts. Joint limits are not
 looked at. Measures: {", ".join(climbable())}.""",
 )
-MOST = 12  # in the table
 
 
 @app.default
@@ -53,27 +49,4 @@ def posture(
     used = compensator_of(plant, compensator)
     with blaming("--tip"):
         found = postures(plant, tip, measure, branch=elbow, loop=used)
-    content = found.to_dict()
-    write_out(out, "posture", found, content)
-    put(document("posture", content)) if json else put(*_tables(found), *written(out))
-
-
-def _tables(found: Postures) -> list[RenderableType]:
-    arm, several = found.plant.arm, len(found.best.modes) > 1
-    rows = [_row(str(i), one, several) for i, one in enumerate(found.found[:MOST], start=1)]
-    rows += [_row("unasked", found.usual, several)] if found.usual else []
-    unit = "" if found.measure.unit == "1" else f"\n[{found.measure.unit}]"
-    modes = [f"mode {i + 1}" for i in range(len(found.best.modes))] if several else []
-    best = listed(found.best.joints, arm.joint_names, arm.joint_units)
-    heading = f"postures by {found.measure.name} {'with' if found.compensated else 'without'} compensator"
-    where = listed(found.target, arm.task.rows, arm.task.units)
-    return [
-        title(found.plant.name, heading),
-        "",
-        facts([("tip", where), ("best joints", best)]),
-        table(["posture", "branch", f"{found.measure.name}{unit}", *modes], rows, words=(0, 1), blank_after=False),
-    ]
-
-
-def _row(name: str, one: Posture, several: bool) -> list[str]:
-    return [name, one.branch, number(one.value, 6), *(number(value, 6) for value in one.modes if several)]
+    show("posture", found, json, out)

@@ -9,10 +9,8 @@ from cyclopts import App, Parameter
 from flexbase.cli.options.common import CompensatorFile, Json, option
 from flexbase.cli.options.pose import Robot, compensator_of
 from flexbase.cli.options.words import Names, Vector, counts, names, numbers
-from flexbase.cli.terminal.document import document
-from flexbase.cli.terminal.out import PICTURES, OutFile, check_out, write_out, written
-from flexbase.cli.terminal.robust import curves, points
-from flexbase.cli.terminal.show import put, title
+from flexbase.cli.terminal.out import PICTURES, OutFile, check_out
+from flexbase.cli.terminal.show import show
 from flexbase.plant import load
 from flexbase.study.robust_configurations.curves import RobustCurves, robust_curves
 from flexbase.study.robust_configurations.points import COUNT, RobustPoints, robust_points
@@ -50,12 +48,6 @@ def rac(
     found: RobustCurves | RobustPoints
     if plant.arm.k == 2 and count is None and not modes:
         found = robust_curves(plant, axes, hold=hold, loop=used)
-        shown = curves(found)
     else:
         found = robust_points(plant, modes or None, COUNT if count is None else count, loop=used)
-        shown = points(found)
-    content = found.to_dict()
-    write_out(out, "rac", found, content)
-    put(document("rac", content)) if json else put(
-        title(plant.name, "robust arm configurations"), *shown, *written(out)
-    )
+    show("rac", found, json, out)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from cyclopts import App
 
 from flexbase.cli.options.common import Json
-from flexbase.cli.terminal.document import document
-from flexbase.cli.terminal.show import put, table
+from flexbase.cli.terminal.show import say
 from flexbase.model.files.project import bundled
+from flexbase.sheets.sheet import make_sheet, table, words
 
 app = App(
     name="robots",
@@ -20,8 +20,6 @@ app = App(
 @app.default
 def robots(*, json: Json = False) -> None:
     """Names that stand for ROBOT, and what each is."""
-    found = bundled()
-    content = {"robots": [{"name": name, "description": text} for name, text in found.items()]}
-    put(document("robots", content)) if json else put(
-        table(["robot", "what it is"], list(found.items()), words=(0, 1), blank_after=False)
-    )
+    content = {"robots": [{"name": name, "description": text} for name, text in bundled().items()]}
+    listed = table([words("robot"), words("what it is")], bundled().items())
+    say("robots", content, make_sheet("Bundled robots", "", listed), json)

@@ -13,11 +13,8 @@ from flexbase.cli.options.pose import Elbow, Robot, compensator_of, tip_pose
 from flexbase.cli.options.sampled import SampledOptions
 from flexbase.cli.options.sensing import SensingOptions
 from flexbase.cli.options.words import Vector, numbers
-from flexbase.cli.terminal.document import document
-from flexbase.cli.terminal.out import Out, check_out, write_out, written
-from flexbase.cli.terminal.run import tables
-from flexbase.cli.terminal.sampled_table import tables as sampled_tables
-from flexbase.cli.terminal.show import put
+from flexbase.cli.terminal.out import Out, check_out
+from flexbase.cli.terminal.show import show
 from flexbase.model.loop import Loop
 from flexbase.plant import load
 from flexbase.simulation import Run, SampledRun
@@ -66,8 +63,5 @@ def simulate(
         found = sampled.run(here, there, senses, asked, move)
     else:
         found = run_of(plant, here, there, asked, move=move)
-    content = found.to_dict()
-    write_out(out, "simulate", found, content)
-    rows = tables(found) if isinstance(found, Run) else sampled_tables(found)
-    put(document("simulate", content)) if json else put(*rows, *written(out))
+    show("simulate", found, json, out)
     return 0 if found.settled else 1

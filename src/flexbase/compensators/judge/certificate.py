@@ -20,6 +20,7 @@ from flexbase.linear.margins import (
 from flexbase.linear.modal import modes
 from flexbase.model.loop import Asked, Gain, loop_on
 from flexbase.plant import Pose
+from flexbase.sheets import units
 
 NEARLY_SINGULAR = 0.01  # lambda_min(M - E) over that of M
 MISSED = 1e-3  # relative miss of the targets that deserves a word
@@ -72,7 +73,9 @@ def certify(
         statement=statement(pose, E),
         warnings=cautions,
     )
-    return Compensator(method, pose.plant.name, E, pose.q, certificate, history or {})
+    return Compensator(
+        method, pose.plant.name, E, pose.q, certificate, history or {}, units.common("inertia", pose.arm.joint_units)
+    )
 
 
 def _cautions_of_targets(residual: float | None) -> tuple[str, ...]:

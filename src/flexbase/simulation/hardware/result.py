@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import ClassVar
 
 import numpy as np
 
 from flexbase.checks import Array
 from flexbase.plant import Pose
 from flexbase.sampled.controller import SampledController
+from flexbase.sheets.numbers import number
+from flexbase.sheets.sheet import Sheet, answer, facts, make_sheet
+from flexbase.sheets.told import Told
 from flexbase.simulation.hardware.push import Push
 from flexbase.simulation.settling import SETTLED, error_sizes
 
@@ -17,7 +20,7 @@ GROWS = 1.5  # of the error between two quarters of the time judged: more than n
 
 
 @dataclass(frozen=True, eq=False)
-class SampledRun:
+class SampledRun(Told):
     """A run of a sampled controller on a nonlinear plant, one entry a sample of the controller.
 
     t : shape (T,) [s]; q, rates : shape (T, N); tip_error : true, not as measured, against the goal, shape (T, k)
@@ -45,6 +48,31 @@ class SampledRun:
     tolerance: float = SETTLED
     stopped: str | None = None
     cautions: tuple[str, ...] = ()
+
+    document: ClassVar = (
+        "method=controller.name",
+        "engine",
+        "rate_hz=controller.sensing.rate",
+        "spectral_radius",
+        "predicted_stable=predicted",
+        "settled",
+        "diverged",
+        "stopped",
+        "settling_time_s",
+        "last_error_m=last_error",
+        "growth",
+        "tolerance_m=tolerance",
+        "peak_error_m",
+        "peak_torque",
+        "saturated_samples",
+        "switch_s=switch",
+        "push=_push",
+        "seed",
+        "t",
+        "q",
+        "tip_error",
+        "torque",
+    )
 
     @property
     def diverged(self) -> bool:
@@ -111,47 +139,29 @@ class SampledRun:
         """Largest torque of each arm joint [N m or N], shape (n,)."""
         return np.asarray(np.abs(self.torque).max(axis=0))
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers, with units in the names."""
-        return {
-            "method": self.controller.name,
-            "engine": self.engine,
-            "rate_hz": self.controller.sensing.rate,
-            "spectral_radius": self.spectral_radius,
-            "predicted_stable": self.predicted,
-            "settled": self.settled,
-            "diverged": self.diverged,
-            "stopped": self.stopped,
-            "settling_time_s": self.settling_time_s,
-            "last_error_m": self.last_error,
-            "growth": self.growth,
-            "tolerance_m": self.tolerance,
-            "peak_error_m": self.peak_error_m,
-            "peak_torque": self.peak_torque.tolist(),
-            "saturated_samples": self.saturated_samples,
-            "switch_s": self.switch,
-            "push": None if self.push is None else [*self.push.force, self.push.start, self.push.duration],
-            "seed": self.seed,
-            "t": self.t.tolist(),
-            "q": self.q.tolist(),
-            "tip_error": self.tip_error.tolist(),
-            "torque": self.torque.tolist(),
-        }
-
-    def summary(self) -> str:
-        """Three lines in plain text."""
-        if self.stopped:
-            verdict = f"diverges: {self.stopped}"
-        elif self.settling_time_s is not None:
-            verdict = f"settles within {1e3 * self.settling_time_s:.1f} ms to {1e3 * self.tolerance:g} mm"
-        else:
-            verdict = f"does not settle to {1e3 * self.tolerance:g} mm in {self.t[-1] - self.judged_from:.3g} s"
-            verdict += "" if self.last_error is None else f" (last error {1e3 * self.last_error:.3g} mm)"
-        said = "stable" if self.predicted else "unstable"
-        return (
-            f"{self.goal.plant.name}, {self.controller.name} at {self.controller.sensing.rate:g} Hz, "
-            f"plant {self.engine}: {verdict}\n"
-            f"  linear verdict {said}, spectral radius {self.spectral_radius:.5f} a sample\n"
-            f"  peak error {1e3 * self.peak_error_m:.3g} mm, peak torque {np.round(self.peak_torque, 2).tolist()}, "
-            f"{self.saturated_samples} samples saturated"
+    def sheet(self) -> Sheet:
+        """What was run, the linear verdict, and whether the tip settles."""
+        time, last, settles = self.settling_time_s, self.last_error, f"below {1e3 * self.tolerance:g} mm"
+        word = "stable" if self.predicted else "unstable"
+        torques = ", ".join(number(torque, 4) for torque in self.peak_torque)
+        return make_sheet(
+            self.goal.plant.name,
+            f"{self.controller.name} at {self.controller.sensing.rate:g} Hz, plant {self.engine}",
+            facts(
+                ("linear verdict", f"{word}, spectral radius {self.spectral_radius:.5f} a sample"),
+                (
+                    f"settling time after {self.judged_from:g} s",
+                    "none" if time is None else f"{number(1e3 * time, 4)} ms",
+                ),
+                ("last tip error", f"{number(1e3 * last, 4)} mm (or mrad)") if last is not None else None,
+                ("largest tip error after the switch", f"{number(1e3 * self.peak_error_m, 4)} mm (or mrad)"),
+                ("peak torque", f"{torques} N m (or N)"),
+                ("samples saturated", f"{self.saturated_samples} of {len(self.t)}"),
+            ),
+            answer(self.settled, f"Settles {settles}", f"Does not settle {settles}", self.stopped or ""),
+            cautions=self.cautions,
         )
+
+    @property
+    def _push(self) -> list[float] | None:
+        return None if self.push is None else [*self.push.force, self.push.start, self.push.duration]

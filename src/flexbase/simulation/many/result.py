@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flexbase.checks import Array
 from flexbase.plant import Pose
+from flexbase.sheets.numbers import listed
+from flexbase.sheets.sheet import Sheet, facts, make_sheet
+from flexbase.sheets.told import Told
+from flexbase.simulation.settling import SETTLED
 
 OK, DIVERGED, INDEFINITE = 0, 1, 2
 STATUS = {OK: "ok", DIVERGED: "diverged", INDEFINITE: "M - E not positive definite"}
 
 
 @dataclass(frozen=True, eq=False)
-class Runs:
+class Runs(Told):
     """Moves and settlings, one an entry of every array, without their histories.
 
     start : arm joints, shape (runs, n); varied : a parameter's name -> its values, shape (runs,)
@@ -44,6 +48,20 @@ class Runs:
     step_error: float
     cautions: tuple[str, ...] = ()
 
+    document: ClassVar = (
+        "start",
+        "varied",
+        "q",
+        "tip_error",
+        "peak_error_m",
+        "settling_time_s",
+        "status=outcomes",
+        "switch_s=switch",
+        "end_s=end",
+        "step_s=step",
+        "step_error",
+    )
+
     def __len__(self) -> int:
         return len(self.status)
 
@@ -52,41 +70,34 @@ class Runs:
         """Which runs come to stay below 0.1 mm."""
         return np.isfinite(self.settling_time_s)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers, None for NaN, with units in the names."""
-        return {
-            "start": self.start.tolist(),
-            "varied": {name: values.tolist() for name, values in self.varied.items()},
-            "q": _plain(self.q),
-            "tip_error": _plain(self.tip_error),
-            "peak_error_m": _plain(self.peak_error_m),
-            "settling_time_s": _plain(self.settling_time_s),
-            "status": [STATUS[code] for code in self.status.tolist()],
-            "switch_s": self.switch,
-            "end_s": self.end,
-            "step_s": list(self.step),
-            "step_error": self.step_error,
-        }
+    @property
+    def outcomes(self) -> list[str]:
+        """The status of each run in words."""
+        return [STATUS[code] for code in self.status.tolist()]
 
-    def summary(self) -> str:
+    def sheet(self) -> Sheet:
         """How many settle, how fast, and what became of the others."""
-        lines = [f"{self.goal.plant.name}: {len(self)} runs to {np.round(self.goal.tip, 4).tolist()}"]
-        settled = int(self.settled.sum())
-        lines.append(f"  settled below 0.1 mm: {settled} ({100.0 * settled / max(len(self), 1):.1f} %)")
-        if settled:
-            times = 1e3 * self.settling_time_s[self.settled]
-            lines.append(f"  settling time: median {np.median(times):.1f} ms, longest {times.max():.1f} ms")
-        if np.isfinite(self.peak_error_m).any():
-            peaks = 1e3 * self.peak_error_m[np.isfinite(self.peak_error_m)]
-            lines.append(
-                f"  largest error after switching: median {np.median(peaks):.3f} mm, most {peaks.max():.3f} mm"
-            )
-        lines += [f"  {word}: {np.sum(self.status == code)}" for code, word in STATUS.items() if code != OK]
-        lines.append(f"  error of the steps: {self.step_error:.1e} rad or m of a joint")
-        return "\n".join(lines)
-
-
-def _plain(array: Array) -> Any:
-    whole = array.astype(object)
-    whole[~np.isfinite(array)] = None
-    return whole.tolist()
+        settled, runs = int(self.settled.sum()), len(self)
+        times, peaks = (1e3 * found[np.isfinite(found)] for found in (self.settling_time_s, self.peak_error_m))
+        some: list[tuple[str, str]] = []
+        if len(times):
+            some += [("settling time", f"median {np.median(times):.1f} ms, longest {times.max():.1f} ms")]
+        if len(peaks):
+            some += [("largest error after the switch", f"median {np.median(peaks):.3f} mm, most {peaks.max():.3f} mm")]
+        return make_sheet(
+            self.goal.plant.name,
+            f"{runs} runs to {listed(self.goal.tip, self.goal.arm.task.rows, self.goal.arm.task.units)}",
+            facts(
+                (f"settled below {1e3 * SETTLED:g} mm", f"{settled}, {100.0 * settled / max(runs, 1):.1f} %"),
+                *some,
+                ("settling time", f"median {np.median(times):.1f} ms, longest {times.max():.1f} ms")
+                if len(times)
+                else None,
+                ("largest error after the switch", f"median {np.median(peaks):.3f} mm, most {peaks.max():.3f} mm")
+                if len(peaks)
+                else None,
+                *((word, str(int(np.sum(self.status == code)))) for code, word in STATUS.items() if code != OK),
+                ("error of the steps", f"{self.step_error:.1e} rad or m of a joint"),
+            ),
+            cautions=self.cautions,
+        )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,6 +15,9 @@ from flexbase.measures import Measure
 from flexbase.model.loop import Asked
 from flexbase.model.task import check_branch
 from flexbase.plant import Plant
+from flexbase.sheets.numbers import number
+from flexbase.sheets.sheet import Column, Sheet, answer, facts, make_sheet, table, words
+from flexbase.sheets.told import Told
 from flexbase.study.layout.placement import make_placement
 from flexbase.study.layout.postures_on_targets import Standing, branches_of, stand
 from flexbase.study.layout.search import best_place
@@ -37,20 +40,9 @@ class Station:
     branch: str | None
     joints: Array | None
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers in SI units; None where the target is not reached."""
-        joints = None if self.joints is None else self.joints.tolist()
-        return {
-            "name": self.name,
-            "tip": self.tip.tolist(),
-            "value": self.value,
-            "branch": self.branch,
-            "joints": joints,
-        }
-
 
 @dataclass(frozen=True, eq=False)
-class Layout:
+class Layout(Told):
     """A set of targets, and a better place for it. Made by `layout`.
 
     along, shift : the axes, and how far the work moves along each [m]
@@ -70,6 +62,22 @@ class Layout:
     after: tuple[Station, ...]
     compensated: bool
 
+    document: ClassVar = (
+        "robot=plant.name",
+        "measure=measure.name",
+        "unit=measure.unit",
+        "goal",
+        "compensated",
+        "shift=shifts",
+        "turn",
+        "centre",
+        "score_before",
+        "score_after",
+        "unreachable",
+        "before",
+        "after",
+    )
+
     @property
     def unreachable(self) -> tuple[str, ...]:
         """Names of the targets that have no posture in the new place."""
@@ -83,34 +91,44 @@ class Layout:
         least = max if self.measure.small_is_good else min
         return float(least(values) if self.goal == WORST else np.mean(values))
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers in SI units."""
-        return {
-            "robot": self.plant.name,
-            "measure": self.measure.name,
-            "unit": self.measure.unit,
-            "goal": self.goal,
-            "compensated": self.compensated,
-            "shift": dict(zip(self.along, self.shift.tolist(), strict=True)),
-            "turn": self.turn,
-            "centre": list(self.centre),
-            "score_before": self.score(self.before),
-            "score_after": self.score(self.after),
-            "unreachable": list(self.unreachable),
-            "before": [one.to_dict() for one in self.before],
-            "after": [one.to_dict() for one in self.after],
-        }
+    @property
+    def shifts(self) -> dict[str, float]:
+        """How far the work moves along each axis [m]."""
+        return dict(zip(self.along, self.shift.tolist(), strict=True))
 
-    def summary(self) -> str:
-        """The move, the score and a line a target."""
-        moves = [f"{row} {value:+.4f} m" for row, value in zip(self.along, self.shift, strict=True)]
-        moves += [f"turn {self.turn:+.4f} rad"] if self.turn else []
-        lines = [f"{self.plant.name}: move the work by {', '.join(moves)}"]
-        lines.append(
-            f"  {self.goal} {self.measure.name}: {_said(self.score(self.before))} -> {_said(self.score(self.after))}"
+    @property
+    def score_before(self) -> float | None:
+        """The score of the old place."""
+        return self.score(self.before)
+
+    @property
+    def score_after(self) -> float | None:
+        """The score of the new place."""
+        return self.score(self.after)
+
+    def sheet(self) -> Sheet:
+        """The move, a row a target, and whether all are in reach."""
+        moves = ", ".join(f"{row} {number(value, 5)} m" for row, value in self.shifts.items())
+        x, y = (number(value, 5) for value in self.centre)
+        rows = [
+            (one.name, _said(one.value), _said(other.value), other.branch or "")
+            for one, other in zip(self.before, self.after, strict=True)
+        ]
+        unit = "" if self.measure.unit == "1" else f" [{self.measure.unit}]"
+        return make_sheet(
+            self.plant.name,
+            f"layout by the {self.goal} {self.measure.name}{unit}",
+            facts(
+                ("move the work by", moves or "nothing"),
+                ("turned about", f"x {x} m, y {y} m, by {number(self.turn, 5)} rad, before") if self.turn else None,
+                ("or the base", "the opposite way"),
+            ),
+            table(
+                [words("target"), Column("before"), Column("after"), words("branch")],
+                [*rows, (self.goal, _said(self.score_before), _said(self.score_after), "")],
+            ),
+            answer(not self.unreachable, "All in reach", f"Out of reach: {', '.join(self.unreachable)}"),
         )
-        pairs = zip(self.before, self.after, strict=True)
-        return "\n".join([*lines, *(f"  {a.name}: {_said(a.value)} -> {_said(b.value)}" for a, b in pairs)])
 
 
 def layout(

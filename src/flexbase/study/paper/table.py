@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import ClassVar
+
+from flexbase.sheets.plain import Plain
+from flexbase.sheets.sheet import Column, Sheet, facts, make_sheet, table, words
+from flexbase.sheets.told import Told
+
+WIDEST = 12  # signs of a number
 
 
 @dataclass(frozen=True)
-class PaperRow:
+class PaperRow(Plain):
     """One line of the comparison.
 
     paper, ours : a number, or words; paper is None where nothing is printed
@@ -19,6 +25,8 @@ class PaperRow:
     ours: float | str
     digits: int = 4
     remark: str = ""
+
+    document: ClassVar = ("quantity", "paper", "ours", "difference", "remark")
 
     @property
     def difference(self) -> float | None:
@@ -42,7 +50,7 @@ class PaperRow:
 
 
 @dataclass(frozen=True)
-class PaperTable:
+class PaperTable(Told):
     """The paper's numbers beside ours."""
 
     rows: tuple[PaperRow, ...]
@@ -51,17 +59,14 @@ class PaperTable:
         """Quantity, paper, ours, difference and remark of each row, as words."""
         return [row.shown() for row in self.rows]
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers and words."""
-        return {
-            "rows": [
-                {
-                    "quantity": row.quantity,
-                    "paper": row.paper,
-                    "ours": row.ours,
-                    "difference": row.difference,
-                    "remark": row.remark,
-                }
-                for row in self.rows
-            ]
-        }
+    def sheet(self) -> Sheet:
+        """A row a quantity, remarks by number, and the remarks below."""
+        remarks = list(dict.fromkeys(row.remark for row in self.rows if row.remark))
+        columns = [Column(name, widest=WIDEST) for name in ("paper", "ours", "difference", "note")]
+        rows = ([*cells, str(remarks.index(said) + 1) if said else ""] for *cells, said in self.summary_rows())
+        return make_sheet(
+            "Ueda and Yoshikawa, ICRA 2003",
+            "what the paper prints, and ours",
+            table([words("quantity"), *columns], rows),
+            facts(*((str(i), remark) for i, remark in enumerate(remarks, start=1))),
+        )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -18,6 +18,10 @@ from flexbase.measures import Measure
 from flexbase.model.loop import Asked
 from flexbase.model.task import check_branch
 from flexbase.plant import Plant, Pose
+from flexbase.sheets.numbers import listed, number
+from flexbase.sheets.plain import Plain
+from flexbase.sheets.sheet import Column, Sheet, facts, make_sheet, table, words
+from flexbase.sheets.told import Told
 from flexbase.study.layout.placement import Placement
 from flexbase.study.postures.epigraph import ascend
 from flexbase.study.postures.objective import Objective, make_objective
@@ -27,11 +31,12 @@ STARTS = 256  # of Newton, on each side of the elbow
 CLIMBERS = 48  # of those on the target that are followed uphill, the best that lie apart
 APART = 0.15  # sine of half the angle between them: 0.3 rad
 PEAKS = 12  # smooth optima from which the ascent goes on to kinks
+SHOWN = 12  # postures, the best
 DISTINCT = 1e-3  # the same between postures; an ascent stops within 1e-7
 
 
 @dataclass(frozen=True, eq=False)
-class Posture:
+class Posture(Plain):
     """One way to stand on a target.
 
     branch : as in `Plant.solutions`: the elbow's sign, or the signs of shoulder, elbow and wrist
@@ -44,18 +49,16 @@ class Posture:
     value: float
     modes: tuple[float, ...]
 
+    document: ClassVar = ("branch", "value", "modes", "joints")
+
     @property
     def joints(self) -> Array:
         """Arm joints, shape (n,)."""
         return self.pose.joints
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers in SI units."""
-        return {"branch": self.branch, "value": self.value, "modes": list(self.modes), "joints": self.joints.tolist()}
-
 
 @dataclass(frozen=True, eq=False)
-class Postures:
+class Postures(Told):
     """The best posture for a target, and what else there is. Made by `postures`.
 
     found : best first; all solutions of an arm with n = k, the distinct local optima of a redundant one
@@ -69,30 +72,44 @@ class Postures:
     usual: Posture | None
     compensated: bool
 
+    document: ClassVar = (
+        "robot=plant.name",
+        "target",
+        "measure=measure.name",
+        "unit=measure.unit",
+        "compensated",
+        "postures=found",
+        "usual",
+    )
+
     @property
     def best(self) -> Posture:
         """The posture with the best value."""
         return self.found[0]
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers in SI units; "usual" is None where `at_tip` finds none."""
-        return {
-            "robot": self.plant.name,
-            "target": self.target.tolist(),
-            "measure": self.measure.name,
-            "unit": self.measure.unit,
-            "compensated": self.compensated,
-            "postures": [one.to_dict() for one in self.found],
-            "usual": self.usual and self.usual.to_dict(),
-        }
-
-    def summary(self) -> str:
-        """A line a posture, best first."""
-        unit = "" if self.measure.unit == "1" else f" {self.measure.unit}"
-        lines = [f"{self.plant.name} at tip {np.round(self.target, 6).tolist()}, by {self.measure.name}"]
-        for one in self.found:
-            lines.append(f"  {one.branch} {one.value:.6g}{unit}, joints {np.round(one.joints, 4).tolist()}")
-        return "\n".join(lines + ([f"  unasked: {self.usual.value:.6g}{unit}"] if self.usual else []))
+    def sheet(self) -> Sheet:
+        """The best joints, a row a posture, and the posture that is taken unasked."""
+        arm, several = self.plant.arm, len(self.best.modes) > 1
+        named = [*((str(i), one) for i, one in enumerate(self.found[:SHOWN], start=1)), ("unasked", self.usual)]
+        modes = [Column(f"mode {i + 1}") for i in range(len(self.best.modes) if several else 0)]
+        unit = "" if self.measure.unit == "1" else self.measure.unit
+        return make_sheet(
+            self.plant.name,
+            f"postures by {self.measure.name} {'with' if self.compensated else 'without'} compensator",
+            facts(
+                ("tip", listed(self.target, arm.task.rows, arm.task.units)),
+                ("best joints", listed(self.best.joints, arm.joint_names, arm.joint_units)),
+                ("shown", f"the best {SHOWN} of {len(self.found)}") if len(self.found) > SHOWN else None,
+            ),
+            table(
+                [words("posture"), words("branch"), Column(self.measure.name, unit), *modes],
+                (
+                    [name, one.branch, *(number(value, 6) for value in (one.value, *(one.modes if several else ())))]
+                    for name, one in named
+                    if one is not None
+                ),
+            ),
+        )
 
 
 def postures(

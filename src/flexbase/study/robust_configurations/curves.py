@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import ClassVar
 
 import numpy as np
 
@@ -13,8 +13,12 @@ from flexbase.checks import Array
 from flexbase.errors import InputError
 from flexbase.model.loop import Asked
 from flexbase.plant import Plant
+from flexbase.sheets.numbers import number
+from flexbase.sheets.plain import Plain
+from flexbase.sheets.sheet import Column, Sheet, facts, make_sheet, table, words
+from flexbase.sheets.told import Told
 from flexbase.study.robust_configurations.continuation import Equation, follow, near_polyline
-from flexbase.study.robust_configurations.misalignment import Misalignment, make_misalignment, tips_of
+from flexbase.study.robust_configurations.misalignment import TITLE, Misalignment, make_misalignment, tips_of
 from flexbase.sweeps.answers.tables import write_rows
 from flexbase.sweeps.cells.grids import joint_box
 
@@ -25,7 +29,7 @@ EXACT = 1e-10  # sine of the angle between a and b
 
 
 @dataclass(frozen=True, eq=False)
-class RobustCurve:
+class RobustCurve(Plain):
     """One curve on which a mode is positive real.
 
     mode : from 1, slowest first
@@ -39,24 +43,20 @@ class RobustCurve:
     tip: Array
     closed: bool
 
+    document: ClassVar = ("mode", "closed", "length", "joints", "tip")
+
+    def row(self) -> tuple[str, ...]:
+        """The curve in a line: mode, kind, points, length."""
+        return str(self.mode), "closed" if self.closed else "open", str(len(self.joints)), number(self.length, 6)
+
     @property
     def length(self) -> float:
         """Arc length over the joints [rad, m]."""
         return float(np.linalg.norm(np.diff(self.joints, axis=0), axis=1).sum())
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers in SI units."""
-        return {
-            "mode": self.mode,
-            "closed": self.closed,
-            "length": self.length,
-            "joints": self.joints.tolist(),
-            "tip": self.tip.tolist(),
-        }
-
 
 @dataclass(frozen=True, eq=False)
-class RobustCurves:
+class RobustCurves(Told):
     """All robust arm configurations over two joints. Made by `robust_curves`.
 
     axes : names of the two joints; residual : largest |sin(a, b)| on any curve
@@ -68,15 +68,7 @@ class RobustCurves:
     residual: float
     compensated: bool
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers in SI units."""
-        return {
-            "robot": self.plant.name,
-            "axes": list(self.axes),
-            "compensated": self.compensated,
-            "residual": self.residual,
-            "curves": [one.to_dict() for one in self.curves],
-        }
+    document: ClassVar = ("robot=plant.name", "axes", "compensated", "residual", "curves")
 
     def save_csv(self, path: str | Path) -> None:
         """A line a point, curve after curve: number of the curve, mode, joints, tip. Raises InputError."""
@@ -89,13 +81,17 @@ class RobustCurves:
         ]
         write_rows(path, header, rows)
 
-    def summary(self) -> str:
-        """A line a curve."""
-        lines = [f"{self.plant.name}: {len(self.curves)} robust curves over {self.axes[0]}, {self.axes[1]}"]
-        for one in self.curves:
-            kind = "closed" if one.closed else "open"
-            lines.append(f"  mode {one.mode}: {kind}, {len(one.joints)} points, length {one.length:.4g}")
-        return "\n".join(lines)
+    def sheet(self) -> Sheet:
+        """A row a curve."""
+        return make_sheet(
+            self.plant.name,
+            TITLE,
+            facts(("over", ", ".join(self.axes)), ("largest |sin(a, b)|", number(self.residual, 2))),
+            table(
+                [words("curve"), Column("mode"), words("kind"), Column("points"), Column("length")],
+                ((str(i), *one.row()) for i, one in enumerate(self.curves, start=1)),
+            ),
+        )
 
 
 def robust_curves(

@@ -22,6 +22,8 @@ from flexbase.sweeps.cells.parameters import configuration_of
 from flexbase.trace.algebra import Scalar, Vector, mul, norm, or_one, sub, unstack
 from flexbase.trace.kernel import Kernel, kernel_of
 
+TITLE = "robust arm configurations"
+
 
 @dataclass(frozen=True, eq=False)
 class Misalignment:

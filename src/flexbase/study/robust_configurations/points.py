@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,10 @@ from flexbase.errors import InputError
 from flexbase.measures import MEASURES
 from flexbase.model.loop import Asked
 from flexbase.plant import Plant
-from flexbase.study.robust_configurations.misalignment import Misalignment, make_misalignment, tips_of
+from flexbase.sheets.numbers import number
+from flexbase.sheets.sheet import Column, Sheet, facts, make_sheet, table, words
+from flexbase.sheets.told import Told
+from flexbase.study.robust_configurations.misalignment import TITLE, Misalignment, make_misalignment, tips_of
 from flexbase.sweeps.answers.tables import write_rows
 from flexbase.sweeps.engine.evaluate import Engine
 from flexbase.sweeps.engine.formula import Formula
@@ -31,7 +34,7 @@ FLOOR = 1e-12  # of the Gram matrix, which may lose rank
 
 
 @dataclass(frozen=True, eq=False)
-class RobustPoints:
+class RobustPoints(Told):
     """Arm joints at which modes are positive real. Made by `robust_points`.
 
     modes : which modes are, from 1, slowest first
@@ -52,20 +55,23 @@ class RobustPoints:
     residual: float
     compensated: bool
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers in SI units."""
-        return {
-            "robot": self.plant.name,
-            "modes": list(self.modes),
-            "compensated": self.compensated,
-            "samples": self.samples,
-            "found": len(self.joints),
-            "residual": self.residual,
-            "nearest_alignment": self.nearest,
-            "joints": self.joints.tolist(),
-            "tip": self.tip.tolist(),
-            "alignment": self.alignment.tolist(),
-        }
+    document: ClassVar = (
+        "robot=plant.name",
+        "modes",
+        "compensated",
+        "samples",
+        "found",
+        "residual",
+        "nearest_alignment=nearest",
+        "joints",
+        "tip",
+        "alignment",
+    )
+
+    @property
+    def found(self) -> int:
+        """How many postures there are."""
+        return len(self.joints)
 
     def save_csv(self, path: str | Path) -> None:
         """A line a posture: joints, tip, alignment of each mode. Raises InputError."""
@@ -73,17 +79,26 @@ class RobustPoints:
         header = [*arm.joint_names, *arm.task.rows, *(f"alignment_{i + 1}" for i in range(arm.m))]
         write_rows(path, header, np.hstack([self.joints, self.tip, self.alignment]).tolist())
 
-    def summary(self) -> str:
-        """A few lines in plain text."""
-        which = f"mode {self.modes[0]}" if len(self.modes) == 1 else f"modes {', '.join(map(str, self.modes))}"
-        lines = [f"{self.plant.name}: {len(self.joints)} of {self.samples} samples reach a robust posture of {which}"]
-        if len(self.joints):
-            lines.append(
-                f"  median distance in the joints {np.median(self.distance):.4g}, residual {self.residual:.2g}"
-            )
-        elif self.nearest is not None:
-            lines.append(f"  the best has alignment {self.nearest:.6g}")
-        return "\n".join(lines)
+    def sheet(self) -> Sheet:
+        """How many postures there are, and how far their joints and tips reach."""
+        arm, some = self.plant.arm, self.found > 0
+        names = [*arm.joint_names, *(f"{row} of the tip" for row in arm.task.rows)]
+        both = [*self.joints.T, *self.tip.T] if some else []
+        return make_sheet(
+            self.plant.name,
+            TITLE,
+            facts(
+                ("modes", ", ".join(map(str, self.modes))),
+                ("postures", f"{self.found} of {self.samples} samples"),
+                ("largest |a/|a| - b/|b||", number(self.residual, 2)) if some else None,
+                ("median way from the sample", number(float(np.median(self.distance)), 4)) if some else None,
+                ("nearest alignment", number(self.nearest, 6)) if self.nearest is not None else None,
+            ),
+            table(
+                [words("of the postures"), Column("least"), Column("largest")],
+                ([name, number(min(v), 5), number(max(v), 5)] for name, v in zip(names, both, strict=False)),
+            ),
+        )
 
 
 def robust_points(
