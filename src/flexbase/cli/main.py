@@ -10,7 +10,7 @@ from cyclopts import App, Group, Parameter
 
 from flexbase import __version__
 from flexbase.cli.catalogue import COMMANDS
-from flexbase.cli.terminal.faults import one_line_warnings, report, silence_stdout
+from flexbase.cli.terminal.faults import one_line_cautions, report, silence_stdout
 from flexbase.cli.terminal.screen import Screen
 
 INTERRUPTED, BROKEN_PIPE = 130, 141  # 128 and the number of the signal, as shells have it
@@ -46,17 +46,17 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def run(arguments: Sequence[str]) -> int:
     """Run one command line; returns the exit status. No fault leaves as a traceback."""
-    with one_line_warnings():
-        try:
+    try:
+        with one_line_cautions():
             if sys.stdout is None:  # closed by the caller
                 raise OSError(errno.EBADF, "it is closed")
             status = app(list(arguments), exit_on_error=False, print_error=False)
             sys.stdout.flush()
-        except KeyboardInterrupt:
-            return INTERRUPTED
-        except BrokenPipeError:
-            silence_stdout()
-            return BROKEN_PIPE
-        except Exception as fault:
-            return report(fault, list(COMMANDS))
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    except BrokenPipeError:
+        silence_stdout()
+        return BROKEN_PIPE
+    except Exception as fault:
+        return report(fault, list(COMMANDS))
     return int(status or 0)

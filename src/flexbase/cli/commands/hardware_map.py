@@ -15,11 +15,9 @@ from flexbase.cli.options.pose import Robot, compensator_of
 from flexbase.cli.options.sensing import SensingOptions
 from flexbase.cli.options.tips import tips_of
 from flexbase.cli.terminal.cells_bar import cells_bar
-from flexbase.cli.terminal.document import document
 from flexbase.cli.terminal.map_files import check_map_out, store_of, write_map
-from flexbase.cli.terminal.out import OutFile, written
-from flexbase.cli.terminal.screen import put
-from flexbase.cli.terminal.show import show
+from flexbase.cli.terminal.out import OutFile
+from flexbase.cli.terminal.show import say, show
 from flexbase.model.loop import Loop
 from flexbase.plant import load
 from flexbase.study.running.hardware_map import hardware_map
@@ -63,5 +61,5 @@ def map_verdicts(
         how = replace(execution, store=store_of(out))
         found = hardware_map(plant, method, cells, loop=meant, execution=how, progress=progress)
     write_map(out, found)
-    put(document("hardware-map", plain(found))) if json else put(sheet_of(found), *written(out))
+    say("hardware-map", plain(found), sheet_of(found), json, out)
     return None

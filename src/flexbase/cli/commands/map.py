@@ -11,10 +11,9 @@ from flexbase.cli.options.common import CompensatorFile, Json, option
 from flexbase.cli.options.plane import CellOptions, ExecutionOptions
 from flexbase.cli.options.pose import Robot, compensator_of
 from flexbase.cli.options.words import Names, names
-from flexbase.cli.terminal.document import document
 from flexbase.cli.terminal.map_files import check_map_out, store_of, write_map
-from flexbase.cli.terminal.out import OutFile, written
-from flexbase.cli.terminal.screen import put
+from flexbase.cli.terminal.out import OutFile
+from flexbase.cli.terminal.show import say
 from flexbase.cli.terminal.sweeping import check_difference, compared, swept
 from flexbase.measures import MEASURES
 from flexbase.plant import load
@@ -59,4 +58,4 @@ def map_cells(
     ask = compared if difference else swept
     found = ask(plant, measures, cells, how, used)
     write_map(out, found)
-    put(document("map", numbers(found))) if json else put(sheet_of(found), *written(out))
+    say("map", numbers(found), sheet_of(found), json, out)

@@ -1,4 +1,4 @@
-"""Faults and warnings as one line on stderr, and the exit status of each kind."""
+"""Faults and cautions as one line on stderr, and the exit status of each kind."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from contextlib import contextmanager
 
 from cyclopts import CycloptsError
 
+from flexbase.cautions import collected
 from flexbase.cli.terminal.usage import command_line_fault
-from flexbase.errors import FlexbaseError, FlexbaseWarning, Infeasible
+from flexbase.errors import FlexbaseError, Infeasible
 
 NO, WRONG, BROKEN, NO_OUTPUT = 1, 2, 70, 74  # the answer is no; the input is wrong; flexbase itself is; a full disk
 TRACEBACK = "FLEXBASE_TRACEBACK"  # environment variable: let faults of flexbase itself through
@@ -36,19 +37,20 @@ def report(fault: Exception, commands: Sequence[str]) -> int:
 
 
 @contextmanager
-def one_line_warnings() -> Iterator[None]:
-    """Within, a warning is one line on stderr, without its place in the source, and said once."""
-    said: set[str] = set()
+def one_line_cautions() -> Iterator[None]:
+    """Cautions said within are then lines on stderr, each once.
 
-    def show(message: Warning | str, *_: object, **__: object) -> None:
-        if (text := str(message)) not in said:
-            said.add(text)
+    So are warnings of other packages, without their place in the source. Python records those for the whole process
+    only, which here is the program's own.
+    """
+    foreign: list[warnings.WarningMessage] = []
+    said: list[str] = []
+    try:
+        with warnings.catch_warnings(record=True) as foreign, collected(quietly=True) as said:
+            yield
+    finally:
+        for text in dict.fromkeys([*said, *(str(one.message) for one in foreign)]):
             _say("warning", text, 0)
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("always", FlexbaseWarning)
-        warnings.showwarning = show
-        yield
 
 
 def silence_stdout() -> None:
