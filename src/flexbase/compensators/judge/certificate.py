@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexbase.cautions import caution
-from flexbase.checks import Array, check_symmetric, finite_array, is_definite
+from flexbase.checks import Array, is_definite
 from flexbase.compensators.judge.lag_law import lag_limit
 from flexbase.compensators.judge.why_positive_real import statement
 from flexbase.control.compensator import Certificate, Compensator
@@ -18,7 +18,7 @@ from flexbase.linear.margins import (
     lag_margin,
 )
 from flexbase.linear.modal import modes
-from flexbase.model.loop import Asked, Gain, loop_on
+from flexbase.model.loop import Asked, Gain, gain_on, loop_on
 from flexbase.plant import Pose
 from flexbase.sheets import units
 
@@ -44,7 +44,7 @@ def certify(
     Cautions when the algebraic loop does not bear a common delay.
     Raises Infeasible where M - E > 0 is lost to rounding.
     """
-    E = check_symmetric("E", finite_array("E", E), "")
+    E = gain_on(pose.arm, Gain(E))
     gains = loop_on(pose.arm, loop).given_gains
     if not is_definite(modified_inertia(pose, E), pose.M):
         raise Infeasible(f"{method}: what meets the targets leaves M - E no inertia in some direction. Ask for less.")

@@ -11,11 +11,12 @@ from collections.abc import Callable
 import numpy as np
 
 from flexbase.cautions import collected
-from flexbase.checks import Array, check_symmetric, finite_array, inverse
+from flexbase.checks import Array, inverse
 from flexbase.compensators.registry import design
-from flexbase.errors import FlexbaseError, Infeasible, InputError
+from flexbase.errors import FlexbaseError, Infeasible
 from flexbase.linear.discrete.affine_loop import AffineLoop
 from flexbase.linear.discrete.system import Discrete, delay, series, side_by_side, static
+from flexbase.model.loop import Gain, gain_on
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose
@@ -50,13 +51,7 @@ def deflection(pose: Pose, sensing: Sensing, gains: Gains, *, E: Array | None = 
         look, basis = search(pose, sensing, gains)
         tried = [np.tensordot(descend(look, start, LOOKS).x, basis, 1) for start in _starts(pose)]
     else:
-        given = finite_array("E", E)
-        if given.shape != (pose.arm.n, pose.arm.n):
-            raise InputError(
-                f"E: shape {given.shape} given, {(pose.arm.n, pose.arm.n)} needed, one row for each arm joint."
-            )
-        check_symmetric("E", given, "kg m^2 or kg")
-        tried = [given]
+        tried = [gain_on(pose.arm, Gain(E))]
     robots = robots_at(pose, sensing)
     found = [Judged(with_deflection(pose, sensing, gains, one), robots) for one in tried]
     return best_of(found, GOOD_MARGIN, pose)
