@@ -48,13 +48,13 @@ class SecondOrder:
     input_names: tuple[str, ...]
     output_names: tuple[str, ...]
 
-    def transfer_function(self, s: ArrayLike) -> Any:
+    def transfer_function(self, s: ArrayLike) -> np.ndarray:
         """P(s) = C (M s^2 + D s + K)^-1 B at complex frequencies s, shape (..., outputs, inputs).
 
         Raises InputError at a pole, which an undamped mode has on the imaginary axis, a rigid motion at 0.
         """
         s = np.asarray(s, dtype=complex)[..., None, None]
-        return self.C @ solved_at(s, self.M * s * s + self.D * s + self.K, self.B)
+        return np.asarray(self.C @ solved_at(s, self.M * s * s + self.D * s + self.K, self.B))
 
     def state_space(self) -> StateSpace:
         """State x = [q; q'], of order 2N."""

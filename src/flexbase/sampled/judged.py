@@ -19,6 +19,7 @@ from flexbase.sampled.figures import FIGURES
 
 GOOD_MARGIN = 0.3  # disk margin: gains from 0.74 to 1.35, phases to 17 degrees
 CAUTION = 1.02  # a grid may miss the smallest margin by this
+DRIFT = 1e-12  # a motion that dies out by less a sample: rounding decides on which side of 1 its radius lies
 UNSTABLE, STABLE, ALMOST, SAFE = range(4)  # grades; almost: with margins, or on all changed robots, not both
 
 
@@ -75,7 +76,7 @@ class Judged:
     @property
     def stable(self) -> bool:
         """Whether it settles here."""
-        return self.radius < 1.0
+        return _dies_out(self.radius)
 
     @cached_property
     def changed_radii(self) -> tuple[float, ...]:
@@ -96,12 +97,12 @@ class Judged:
     def failed(self) -> tuple[str, ...]:
         """The changed robots on which it is unstable."""
         pairs = zip(self.robots.labels, self.changed_radii, strict=True)
-        return tuple(label for label, radius in pairs if not radius < 1.0)
+        return tuple(label for label, radius in pairs if not _dies_out(radius))
 
     @cached_property
     def survives(self) -> bool:
         """Whether it is stable here and on all changed robots; the first that is not decides."""
-        return self.stable and all(self._radius(i) < 1.0 for i in range(1, 1 + len(self.robots.labels)))
+        return self.stable and all(_dies_out(self._radius(i)) for i in range(1, 1 + len(self.robots.labels)))
 
     @cached_property
     def margins(self) -> tuple[float, float]:
@@ -173,6 +174,10 @@ def judged(controller: SampledController, pose: Pose | None = None, changes: Seq
     if changes is None and isinstance(made, Judged) and made.pose is here:
         return made
     return Judged(controller, robots_at(here, controller.sensing, changes))
+
+
+def _dies_out(radius: float) -> bool:
+    return radius < 1.0 - DRIFT
 
 
 def _shifted(L: np.ndarray) -> np.ndarray:

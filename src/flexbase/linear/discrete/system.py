@@ -46,7 +46,7 @@ class Discrete:
         return np.asarray(self.C @ solved_at(z, z * np.eye(self.order) - self.A, self.B) + self.D)
 
     def static_gain(self) -> Array:
-        """Response to a constant input, after all has settled, shape (outputs, inputs)."""
+        """Response to a constant input, after all has settled, shape (outputs, inputs). Assumes a stable system."""
         return np.asarray(self.C @ np.linalg.solve(np.eye(self.order) - self.A, self.B) + self.D)
 
     def select(self, outputs: list[int] | None = None, inputs: list[int] | None = None) -> Discrete:
