@@ -10,7 +10,9 @@ from flexbase.checks import check_length
 from flexbase.errors import InputError, nearest_name
 
 ACCELERATIONS = ("accelerometer", "encoders", "kalman")
-FASTEST = 1e6  # Hz of any loop
+SLOWEST, FASTEST = 1e-3, 1e6  # Hz of any loop
+LEAST_LAG = 1e-9  # s: a shorter one is none
+LEAST_CORNER = 1e-6  # of a filter, of the rate: a lower one only hears its own rounding
 MOST_DELAY, MOST_EVERY = 50, 200  # samples: each is a state of every channel that it delays
 
 
@@ -84,7 +86,7 @@ def checked_sensing(sensing: Sensing, n: int, where: str = "sensing, ") -> Sensi
     """The same, with limits as tuples of n floats; `where` is put before the field's name. Raises InputError."""
     if not isinstance(sensing, Sensing):
         raise InputError(f"{where.rstrip(', ')}: {sensing!r} says nothing on the loop. Give a Sensing.")
-    _check_range(where, "rate", sensing.rate, 0.0, FASTEST, "Hz")
+    _check_range(where, "rate", sensing.rate, SLOWEST, FASTEST, "Hz")
     for name, (low, high) in _WHOLE.items():
         value = getattr(sensing, name)
         if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
@@ -93,14 +95,21 @@ def checked_sensing(sensing: Sensing, n: int, where: str = "sensing, ") -> Sensi
         hint = nearest_name(sensing.acceleration, ACCELERATIONS)
         raise InputError(f'{where}acceleration: "{sensing.acceleration}" is unknown. {hint}')
     if sensing.encoder_counts is not None:
-        _check_range(where, "encoder_counts", sensing.encoder_counts, 0.0, 1e12, "counts a turn or a metre")
+        _check_range(where, "encoder_counts", sensing.encoder_counts, 1e-3, 1e12, "counts a turn or a metre")
     for name in ("accelerometer_lag", "acceleration_noise", "task_noise"):
         _check_range(where, name, getattr(sensing, name), 0.0, 1e6, _UNITS[name], zero=True)
     _check_range(where, "acceleration_filter", sensing.acceleration_filter, 0.0, FASTEST, "Hz")
+    if 0.0 < sensing.accelerometer_lag < LEAST_LAG:
+        raise InputError(f"{where}accelerometer_lag: {sensing.accelerometer_lag:g} s is below {LEAST_LAG:g} s. Give 0.")
     if sensing.acceleration != "accelerometer" and sensing.acceleration_filter >= 0.5 * sensing.rate:
         raise InputError(
             f"{where}acceleration_filter: {sensing.acceleration_filter:g} Hz is not below half the rate, "
             f"{0.5 * sensing.rate:g} Hz. Give a lower corner or a higher rate."
+        )
+    if sensing.acceleration != "accelerometer" and sensing.acceleration_filter < LEAST_CORNER * sensing.rate:
+        raise InputError(
+            f"{where}acceleration_filter: {sensing.acceleration_filter:g} Hz is below {LEAST_CORNER * sensing.rate:g} "
+            "Hz, a millionth of the rate. Give a higher corner."
         )
     return replace(
         sensing,

@@ -50,7 +50,8 @@ def _around(plants: Sequence[Discrete], controller: SampledController, k: int) -
     first, *held = (feedback(plant, controller.system, external=k).A for plant in plants[:2])
     if not held:
         return SampledLoop(first, 1)
-    return SampledLoop(np.linalg.matrix_power(held[0], len(plants) - 1) @ first, len(plants))
+    with np.errstate(over="ignore", invalid="ignore"):  # an unstable loop may grow without bound; its radius says so
+        return SampledLoop(np.linalg.matrix_power(held[0], len(plants) - 1) @ first, len(plants))
 
 
 def _held(plant: Discrete, k: int, hold: bool = False) -> Discrete:

@@ -9,6 +9,7 @@ import numpy as np
 import scipy.linalg
 
 from flexbase.checks import Array, inverse
+from flexbase.errors import Unsolvable
 from flexbase.linear.second_order import StateSpace, solved_at
 
 ALGEBRAIC = (
@@ -57,11 +58,14 @@ class Discrete:
 
 
 def hold(system: StateSpace, step: float) -> Discrete:
-    """What a zero-order hold makes of a continuous system, exactly."""
+    """What a zero-order hold makes of a continuous system, exactly. Raises Unsolvable where it runs away in a step."""
     states, inputs = system.B.shape
     block = np.zeros((states + inputs, states + inputs))
     block[:states, :states], block[:states, states:] = system.A * step, system.B * step
-    grown = scipy.linalg.expm(block)
+    with np.errstate(over="ignore", invalid="ignore"):
+        grown = scipy.linalg.expm(block)
+    if not np.all(np.isfinite(grown)):
+        raise Unsolvable(f"sensing: in a sample of {step:g} s the plant runs away. Give a higher rate.")
     return Discrete(grown[:states, :states], grown[:states, states:], system.C, system.D, step)
 
 
@@ -146,5 +150,7 @@ def feedback(plant: Discrete, controller: Discrete, external: int = 0) -> Discre
 
 
 def spectral_radius(A: Array) -> float:
-    """Largest absolute value of the eigenvalues: below 1, all dies out."""
+    """Largest absolute value of the eigenvalues: below 1, all dies out. Infinite for what has no finite entries."""
+    if not np.all(np.isfinite(A)):
+        return float(np.inf)
     return float(np.abs(np.linalg.eigvals(A)).max(initial=0.0))
