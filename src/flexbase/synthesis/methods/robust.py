@@ -26,7 +26,7 @@ from flexbase.sampled.controller import SampledController
 from flexbase.sampled.judged import GOOD_MARGIN, Judged, Robots, robots_at
 from flexbase.synthesis.registry import Margin, hardware_method
 from flexbase.synthesis.search.servo import Slow, joint_servo
-from flexbase.synthesis.search.shaping import Weight, design_plant, task_shape
+from flexbase.synthesis.search.shaping import Weight, check_stiff, design_plant, task_shape
 from flexbase.synthesis.search.stiffest import best_of, stiffest
 
 
@@ -76,6 +76,7 @@ def robust(
     stages : tried in turn until the tip is stiff enough for one
     Raises Infeasible where no controller exists at all.
     """
+    check_stiff(pose, gains)
     robots = robots_at(pose, sensing)
     asked = float(np.linalg.eigvalsh(gains.stiffness)[0])
     found: list[Judged] = []

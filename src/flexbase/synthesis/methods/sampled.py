@@ -135,6 +135,8 @@ class SampledProblem:
     def _entries(self) -> list[Array]:
         """Single entries of the gains on tip rate, joint rate and acceleration, each in the unit of its kind."""
         k, n = self.pose.arm.k, len(self.Ls)
+        if not self.gains.damping.any():
+            raise Infeasible(f"{self.pose.plant.name}: no task damping to search around. Give one above 0.")
         Lk = np.linalg.cholesky(self.gains.damping + 1e-9 * np.trace(self.gains.damping) * np.eye(k))
         pull, Ls = -self.pose.Jv.T @ Lk, self.Ls
         sides = [(k, pull, Lk.T), (2 * k, -JOINT_DAMPING * Ls, Ls.T), (2 * k + 2 * n, Ls, Ls.T)]

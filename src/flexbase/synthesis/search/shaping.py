@@ -7,8 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from flexbase.checks import Array
+from flexbase.checks import Array, is_definite
 from flexbase.control.null_space import self_motions
+from flexbase.errors import Infeasible
 from flexbase.linear.discrete.system import Discrete, series, side_by_side, static
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
@@ -50,16 +51,26 @@ def design_plant(pose: Pose, sensing: Sensing) -> Discrete:
     return sampled_plant(pose, plain).select(list(range(k + 2 * n)), list(range(n)))
 
 
+def check_stiff(pose: Pose, gains: Gains) -> None:
+    """Raises Infeasible where the task's stiffness leaves a direction of the tip without weight."""
+    if not is_definite(gains.stiffness):
+        raise Infeasible(
+            f"{pose.plant.name}: the task stiffness is zero in some direction, where loop shaping has no weight then. "
+            "Give a positive definite one."
+        )
+
+
 def task_shape(pose: Pose, gains: Gains, scale: float, joint_weight: float, lag: Discrete | None = None) -> Shape:
     """Inputs f, tau = Jv^T f; outputs scale Kp e and joint_weight scale Kp Jv dq_a.  [theory §10]
 
     Inputs and outputs each take the root of scale Kp, so that rows of different units weigh alike.
 
     A redundant arm's self-motion gets an input and an output of its own, W dq_a with W Mhat^-1 Jv^T = 0, so that the
-    task cannot lose it: stiffness per inertia the mean of the task's. [theory §7]
+    task cannot lose it: stiffness per inertia the mean of the task's. [theory §7] Raises Infeasible.
     """
     n, k = pose.arm.n, pose.arm.k
     Jv, inertia = pose.Jv, pose.Mhat
+    check_stiff(pose, gains)
     root = np.linalg.cholesky(scale * gains.stiffness)
     W = np.zeros((0, n))
     if n > k:
