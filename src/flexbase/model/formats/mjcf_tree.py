@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import warnings
 from dataclasses import replace
 from typing import Any
 
@@ -59,8 +58,7 @@ def read_mjcf(root: Element, tool: str | None) -> RobotFile:
 
 def _compiled(mjcf: Mjcf) -> Any:
     try:
-        with quiet_mujoco("robots") as mujoco, warnings.catch_warnings():
-            warnings.simplefilter("ignore")
+        with quiet_mujoco("robots") as mujoco:
             return mujoco.MjModel.from_xml_string("\n".join(mjcf.text))
     except ValueError as fault:
         raise InputError(f"MuJoCo refuses the robot: {_reason(mjcf, str(fault))}") from fault

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass
 from typing import Self
@@ -75,7 +74,5 @@ def _random(names: list[str], count: int, seed: int) -> dict[str, Array]:
 def _sobol(names: list[str], count: int, seed: int) -> dict[str, Array]:
     from scipy.stats import qmc  # half a second to import
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # a count that is no power of 2 is a little less even
-        points = qmc.Sobol(len(names), scramble=True, rng=seed).random(count)
+    points = qmc.Sobol(len(names), scramble=True, rng=seed).random_base2((count - 1).bit_length())[:count]
     return {name: np.ascontiguousarray(column) for name, column in zip(sorted(names), points.T, strict=True)}
