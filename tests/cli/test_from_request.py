@@ -11,7 +11,7 @@ from cyclopts import App, Group
 from flexbase import InputError
 from flexbase.checks import check_request
 from flexbase.cli.options.from_request import from_request
-from flexbase.cli.options.words import sign
+from flexbase.cli.options.values import sign
 from flexbase.requests import asked
 
 

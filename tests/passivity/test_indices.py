@@ -9,7 +9,7 @@ import pytest
 
 import flexbase as fb
 from flexbase.linear.passivity.passivity_index import input_index, largest_gain, output_index
-from flexbase.linear.passivity.port import Port, compressed
+from flexbase.linear.passivity.stable_part import Port, compressed
 from systems.dense_sweep import grid, least_eigenvalue, lowest
 
 

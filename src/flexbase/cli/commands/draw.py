@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from cyclopts import App, Parameter
 
 from flexbase.cli.options.common import option
-from flexbase.cli.options.words import names, number
+from flexbase.cli.options.values import names, number
 from flexbase.cli.terminal.out import PICTURES, OutFile, check_out, write_out, written
 from flexbase.cli.terminal.screen import put
 from flexbase.errors import InputError, nearest_name

@@ -10,7 +10,7 @@ from flexbase.cli.options.common import Json, option
 from flexbase.cli.options.gains import GainOptions
 from flexbase.cli.options.pose import PoseOptions, Robot
 from flexbase.cli.options.sensing import SensingOptions
-from flexbase.cli.options.words import Names, names, number
+from flexbase.cli.options.values import Names, names, number
 from flexbase.cli.terminal.out import OutFile, check_out, write_out
 from flexbase.cli.terminal.progress import progress_bar
 from flexbase.cli.terminal.show import say

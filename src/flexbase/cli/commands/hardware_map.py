@@ -8,9 +8,9 @@ from typing import Annotated, Any
 
 from cyclopts import App, Parameter
 
+from flexbase.cli.options.cells import TipCells, VerdictExecution
 from flexbase.cli.options.common import CompensatorFile, Json
 from flexbase.cli.options.gains import GainOptions
-from flexbase.cli.options.plane import TipCells, VerdictExecution
 from flexbase.cli.options.pose import Robot, compensator_of
 from flexbase.cli.options.sensing import SensingOptions
 from flexbase.cli.options.tips import tips_of

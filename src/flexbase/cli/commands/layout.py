@@ -10,8 +10,8 @@ from cyclopts import App, Parameter
 from flexbase.cli.options.common import CompensatorFile, Json, option
 from flexbase.cli.options.elbow import AnyElbow
 from flexbase.cli.options.pose import Robot, compensator_of
-from flexbase.cli.options.words import Names, names
-from flexbase.cli.options.words import number as one_number
+from flexbase.cli.options.values import Names, names
+from flexbase.cli.options.values import number as one_number
 from flexbase.cli.terminal.out import Out, check_out
 from flexbase.cli.terminal.show import show
 from flexbase.plant import load

@@ -7,10 +7,10 @@ from typing import Annotated
 
 from cyclopts import App, Parameter
 
+from flexbase.cli.options.cells import CellOptions, ExecutionOptions
 from flexbase.cli.options.common import CompensatorFile, Json, option
-from flexbase.cli.options.plane import CellOptions, ExecutionOptions
 from flexbase.cli.options.pose import Robot, compensator_of
-from flexbase.cli.options.words import Names, names
+from flexbase.cli.options.values import Names, names
 from flexbase.cli.terminal.map_files import check_map_out, store_of, write_map
 from flexbase.cli.terminal.out import OutFile
 from flexbase.cli.terminal.show import say

@@ -7,10 +7,10 @@ from typing import Annotated
 
 from cyclopts import App, Parameter
 
+from flexbase.cli.options.cells import DrawOptions, StudyCells, StudyExecution
 from flexbase.cli.options.common import CompensatorFile, Json, option
-from flexbase.cli.options.plane import DrawOptions, StudyCells, StudyExecution
 from flexbase.cli.options.pose import PoseOptions, Robot, compensator_of
-from flexbase.cli.options.words import Names, names
+from flexbase.cli.options.values import Names, names
 from flexbase.cli.terminal.out import PICTURES, OutFile, check_out
 from flexbase.cli.terminal.progress import progress_bar
 from flexbase.cli.terminal.show import show

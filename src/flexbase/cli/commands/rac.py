@@ -8,7 +8,7 @@ from cyclopts import App, Parameter
 
 from flexbase.cli.options.common import CompensatorFile, Json, option
 from flexbase.cli.options.pose import Robot, compensator_of
-from flexbase.cli.options.words import Names, Vector, counts, names, numbers
+from flexbase.cli.options.values import Names, Vector, counts, names, numbers
 from flexbase.cli.terminal.out import PICTURES, OutFile, check_out
 from flexbase.cli.terminal.show import show
 from flexbase.plant import load

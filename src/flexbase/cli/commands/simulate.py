@@ -12,7 +12,7 @@ from flexbase.cli.options.move import MoveOptions
 from flexbase.cli.options.pose import Elbow, Robot, compensator_of, tip_pose
 from flexbase.cli.options.sampled import SampledOptions
 from flexbase.cli.options.sensing import SensingOptions
-from flexbase.cli.options.words import Vector, numbers
+from flexbase.cli.options.values import Vector, numbers
 from flexbase.cli.terminal.out import Out, check_out
 from flexbase.cli.terminal.show import show
 from flexbase.model.loop import Loop

@@ -8,7 +8,7 @@ from cyclopts import App, Parameter
 
 from flexbase.cli.options.common import Json, option
 from flexbase.cli.options.pose import Robot
-from flexbase.cli.options.words import Names, names
+from flexbase.cli.options.values import Names, names
 from flexbase.cli.terminal.out import OutFile, check_out
 from flexbase.cli.terminal.progress import progress_bar
 from flexbase.cli.terminal.show import show

@@ -8,7 +8,7 @@ from cyclopts import App
 
 from flexbase.cli.options.common import CompensatorFile, Json, option
 from flexbase.cli.options.pose import PoseOptions, Robot, compensator_of
-from flexbase.cli.options.words import number
+from flexbase.cli.options.values import number
 from flexbase.cli.terminal.out import Out, check_out
 from flexbase.cli.terminal.show import show
 from flexbase.linear.passivity.judge import verdict as verdict_of

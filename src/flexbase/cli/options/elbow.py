@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from flexbase.cli.options.common import option
-from flexbase.cli.options.words import sign
+from flexbase.cli.options.values import sign
 
 Elbow = Annotated[
     str | None,

@@ -24,7 +24,7 @@ from cyclopts import Group, Parameter
 
 from flexbase.checks import choose
 from flexbase.cli.options.common import option
-from flexbase.cli.options.words import Range, Vector, counts, names, number, number_or_numbers, numbers, ranges, whole
+from flexbase.cli.options.values import Range, Vector, counts, names, number, number_or_numbers, numbers, ranges, whole
 from flexbase.requests import Option, options_of
 
 Request = TypeVar("Request")

@@ -8,7 +8,7 @@ from typing import Annotated
 from cyclopts import Group, Parameter
 
 from flexbase.cli.options.common import option
-from flexbase.cli.options.words import Vector, numbers
+from flexbase.cli.options.values import Vector, numbers
 from flexbase.errors import InputError
 from flexbase.model.task import Gains, make_gains
 from flexbase.plant import Plant

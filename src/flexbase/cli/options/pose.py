@@ -10,7 +10,7 @@ from cyclopts import Group, Parameter
 
 from flexbase.cli.options.common import blaming, option
 from flexbase.cli.options.elbow import Elbow as Elbow
-from flexbase.cli.options.words import Vector, numbers
+from flexbase.cli.options.values import Vector, numbers
 from flexbase.control.compensator import Compensator, load_compensator
 from flexbase.errors import InputError
 from flexbase.model.loop import loop_on

@@ -11,7 +11,7 @@ from flexbase.cli.options.common import option
 from flexbase.cli.options.from_request import from_methods, options_given
 from flexbase.cli.options.move import as_sampled
 from flexbase.cli.options.sensing import SensingOptions
-from flexbase.cli.options.words import Vector, numbers
+from flexbase.cli.options.values import Vector, numbers
 from flexbase.errors import InputError
 from flexbase.model.loop import Loop
 from flexbase.plant import Pose

@@ -8,7 +8,7 @@ from typing import Annotated
 from cyclopts import Group, Parameter
 
 from flexbase.cli.options.common import option
-from flexbase.cli.options.words import Vector, number, numbers, whole
+from flexbase.cli.options.values import Vector, number, numbers, whole
 from flexbase.errors import InputError
 from flexbase.model.files.sensing_table import samples_between
 from flexbase.model.sensing import TYPICAL, Sensing, checked_sensing

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 from pathlib import Path
 
-from flexbase.cli.options.words import number
+from flexbase.cli.options.values import number
 from flexbase.errors import InputError
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from flexbase.cli.options.words import Names
+from flexbase.cli.options.values import Names
 from flexbase.cli.terminal.cells_bar import cells_bar
 from flexbase.errors import InputError
 from flexbase.model.loop import HasGain

@@ -10,7 +10,7 @@ import scipy.linalg
 from flexbase.checks import Array
 from flexbase.linear.linearise import reduced_arrays
 from flexbase.linear.passivity.passivity_index import input_index, largest_gain
-from flexbase.linear.passivity.port import compressed
+from flexbase.linear.passivity.stable_part import compressed
 from flexbase.linear.passivity.vibration import base_vibration
 from flexbase.linear.reduced import robustness
 from flexbase.model.loop import Gain

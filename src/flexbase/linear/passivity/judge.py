@@ -14,7 +14,7 @@ from flexbase.linear.passivity.level_search import Interval, intervals_below
 from flexbase.linear.passivity.negative_imaginary import negative_imaginary
 from flexbase.linear.passivity.passivity_index import input_index, largest_gain, output_index, skewness
 from flexbase.linear.passivity.popov import Popov
-from flexbase.linear.passivity.port import Port, compressed
+from flexbase.linear.passivity.stable_part import Port, compressed
 from flexbase.linear.passivity.verdict import POSITIVE_REAL, Verdict
 from flexbase.linear.passivity.vibration import (
     UndampedMode,

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from flexbase.linear.passivity.level_search import Interval
 from flexbase.linear.passivity.passivity_index import input_index, largest_gain
-from flexbase.linear.passivity.port import compressed
+from flexbase.linear.passivity.stable_part import compressed
 from flexbase.linear.passivity.vibration import Vibration
 
 

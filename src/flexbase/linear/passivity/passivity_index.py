@@ -8,7 +8,7 @@ import scipy.linalg
 from flexbase.checks import Array
 from flexbase.linear.passivity.level_search import EVERYWHERE, Interval, Lowest, lowest
 from flexbase.linear.passivity.popov import Popov
-from flexbase.linear.passivity.port import Port, compressed
+from flexbase.linear.passivity.stable_part import Port, compressed
 
 SKEW = 1e-9  # relative skew part at an end of the frequency axis from which the output index has no lower bound
 END = 1e5  # how far beyond the slowest and the fastest pole the output index is followed; its limits are met to 1e-10

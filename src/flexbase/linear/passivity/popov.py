@@ -6,7 +6,7 @@ import numpy as np
 import scipy.linalg
 
 from flexbase.checks import Array
-from flexbase.linear.passivity.port import Port
+from flexbase.linear.passivity.stable_part import Port
 
 
 class Popov:

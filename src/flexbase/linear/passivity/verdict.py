@@ -9,7 +9,7 @@ import numpy as np
 
 from flexbase.checks import Array
 from flexbase.linear.passivity.level_search import Interval
-from flexbase.linear.passivity.port import Port
+from flexbase.linear.passivity.stable_part import Port
 from flexbase.plant import Pose
 from flexbase.sheets.numbers import number
 from flexbase.sheets.sheet import Sheet, answer, facts, make_sheet

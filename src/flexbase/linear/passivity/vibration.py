@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from flexbase.checks import Array
 from flexbase.linear.linearise import check_definite_inertia, is_reducible, linearise, reduced_arrays
-from flexbase.linear.passivity.port import Port
+from flexbase.linear.passivity.stable_part import Port
 from flexbase.linear.second_order import SecondOrder
 from flexbase.model.loop import Asked, loop_on
 from flexbase.plant import Pose
