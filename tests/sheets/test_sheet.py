@@ -133,6 +133,7 @@ def test_html_of_a_sheet():
     assert page.elements["table"] == page.elements["tbody"] == 3  # facts are tables too
     assert (page.elements["th"], page.elements["caption"]) == (4, 2)
     assert html(whole()).count("color:") == 2  # yes and no; a neutral answer has none
+    assert html(whole()).count("monospace") == 2  # the lines of a matrix keep their columns
 
 
 @pytest.mark.parametrize("columns", [80, 20, 1000])

@@ -9,7 +9,6 @@ from flexbase.sheets.sheet import BAD, GOOD, Answer, Facts, Note, Part, Sheet, T
 from flexbase.sheets.text import printable
 
 COLOURS = {GOOD: "#1a7f37", BAD: "#b42318"}
-_LEFT, _RIGHT = 'style="text-align:left;white-space:pre-wrap"', 'style="text-align:right;white-space:pre-wrap"'
 
 
 def html(sheet: Sheet) -> str:
@@ -30,9 +29,9 @@ def _part(part: Part) -> Iterator[str]:
         case Sheet():
             yield from _sheet(part)
         case Facts():
-            yield _table((), (_row("td", row, (_LEFT, _LEFT)) for row in part.rows), part.heading)
+            yield _table((), (_row("td", row, ("left", "left")) for row in part.rows), part.heading)
         case Table():
-            sides = [_LEFT if column.words else _RIGHT for column in part.columns]
+            sides = ["left" if column.words else "right" for column in part.columns]
             head = _row("th", (column.head for column in part.columns), sides)
             yield _table((head,), (_row("td", row, sides) for row in part.rows), part.heading)
         case Answer():
@@ -40,19 +39,26 @@ def _part(part: Part) -> Iterator[str]:
             rest = f". {_safe(part.rest)}" if part.rest else ""
             yield f"<p><strong{colour}>{_safe(part.sentence)}</strong>{rest}</p>"
         case Note():
-            yield f"<p>{_safe(part.text)}</p>"
+            yield _element("p", part.text)
 
 
 def _table(head: Iterable[str], body: Iterable[str], heading: str) -> str:
-    caption = f"<caption>{_safe(heading)}</caption>" if heading else ""
+    caption = _element("caption", heading, "text-align:left") if heading else ""
     above = "".join(head)
     return f"<table>{caption}{above and f'<thead>{above}</thead>'}<tbody>{''.join(body)}</tbody></table>"
 
 
 def _row(kind: str, cells: Iterable[str], sides: Iterable[str]) -> str:
-    return (
-        f"<tr>{''.join(f'<{kind} {side}>{_safe(cell)}</{kind}>' for cell, side in zip(cells, sides, strict=True))}</tr>"
-    )
+    at = "bottom" if kind == "th" else "top"
+    style = f"vertical-align:{at};padding:0.1em 0.7em"
+    filled = (_element(kind, cell, f"text-align:{side};{style}") for cell, side in zip(cells, sides, strict=True))
+    return f"<tr>{''.join(filled)}</tr>"
+
+
+def _element(kind: str, words: str, style: str = "") -> str:
+    """Words with their lines. Where there are several, all signs are as wide: a matrix keeps its columns."""
+    even = ";font-family:monospace" if "\n" in words and kind != "th" else ""
+    return f'<{kind} style="white-space:pre-wrap;{style}{even}">{_safe(words)}</{kind}>'
 
 
 def _safe(words: str) -> str:
