@@ -11,6 +11,7 @@ import flexbase as fb
 from contract.results import DATASETS, EXAMPLES, example
 from flexbase.sheets.html import html
 from flexbase.sheets.plain import plain
+from flexbase.sheets.sheet import Facts
 from flexbase.sheets.told import Told
 from sheets.reading import Page, on_terminal, signs, words_of
 
@@ -38,6 +39,9 @@ def test_a_sheet_has_a_heading_and_something_to_say(answer):
     sheet = fb.sheet(answer)
     assert sheet.title.strip()
     assert sheet.parts
+    for part in sheet.parts:
+        if isinstance(part, Facts):  # each once
+            assert len({row.name for row in part.rows}) == len(part.rows)
     assert fb.summary(answer).startswith(sheet.title)
 
 

@@ -90,12 +90,6 @@ class Runs(Told):
             facts(
                 (f"settled below {1e3 * SETTLED:g} mm", f"{settled}, {100.0 * settled / max(runs, 1):.1f} %"),
                 *some,
-                ("settling time", f"median {np.median(times):.1f} ms, longest {times.max():.1f} ms")
-                if len(times)
-                else None,
-                ("largest error after the switch", f"median {np.median(peaks):.3f} mm, most {peaks.max():.3f} mm")
-                if len(peaks)
-                else None,
                 *((word, str(int(np.sum(self.status == code)))) for code, word in STATUS.items() if code != OK),
                 ("error of the steps", f"{self.step_error:.1e} rad or m of a joint"),
             ),
