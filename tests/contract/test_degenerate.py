@@ -296,3 +296,11 @@ def test_sensing_below_what_numbers_bear(pose: fb.Pose, given: dict[str, Any], s
 def test_a_gain_beyond_all_numbers(pose: fb.Pose) -> None:
     with pytest.raises(fb.InputError, match=r"compensator E: -1e.300 is beyond the largest value that is read, 1e.100"):
         fb.modes(pose, fb.Gain(-1e300 * np.eye(2)))
+
+
+def test_a_sweep_without_modes_has_a_summary() -> None:
+    """A rigid base: values of modes have no entries at all."""
+    plant = load("a rigid base")
+    assert plant is not None
+    found = answered(lambda: fb.sweep(plant, ["frequency"], cells=fb.Cells(shape=(3, 3))))
+    assert found is None or "nan" not in fb.summary(found).lower()

@@ -57,8 +57,8 @@ def extents(dataset: xarray.Dataset) -> list[Extent]:
         low, high = np.full(max(modes, 1), np.nan), np.full(max(modes, 1), np.nan)
         for part in _parts(dataset, variable):
             values = part.reshape(-1, max(modes, 1))
-            low = np.fmin(low, np.fmin.reduce(values, axis=0))
-            high = np.fmax(high, np.fmax.reduce(values, axis=0))
+            low = np.fmin(low, np.fmin.reduce(values, axis=0, initial=np.nan))
+            high = np.fmax(high, np.fmax.reduce(values, axis=0, initial=np.nan))
         unit = str(variable.attrs["units"])
         found += [
             Extent(name, i + 1 if modes else 0, float(low[i]), float(high[i]), unit) for i in range(max(modes, 1))
