@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import App, Parameter
 
@@ -16,6 +16,9 @@ from flexbase.sheets.sheet import Sheet
 from flexbase.study.montecarlo import is_study
 from flexbase.sweeps import difference, open_dataset
 from flexbase.sweeps.answers.chart import chart_of, thinned
+
+if TYPE_CHECKING:
+    import xarray
 
 app = App(
     name="draw",
@@ -62,7 +65,7 @@ def draw(
     put(Sheet(chart.heading, f"{', '.join(layer.title for layer in chart.layers)} over {axes}"), *written(out))
 
 
-def _chosen(dataset: Any, at: Values) -> Any:
+def _chosen(dataset: xarray.Dataset, at: Values) -> xarray.Dataset:
     """The cells nearest to the values given. Raises InputError."""
     for name, value in at:
         dims = dataset["status"].dims
