@@ -70,6 +70,6 @@ def _chosen(dataset: xarray.Dataset, at: Values) -> xarray.Dataset:
     for name, value in at:
         dims = dataset["status"].dims
         if name not in dims:
-            raise InputError(f'--at: no axis "{name}". {nearest_name(name, dims)}')
+            raise InputError(f'--at: no axis "{name}". {nearest_name(name, map(str, dims))}')
         dataset = dataset.sel({name: value}, method="nearest")
     return dataset
