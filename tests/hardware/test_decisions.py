@@ -48,6 +48,18 @@ def test_the_eight_robots_are_these(paper: fb.Plant, paper_pose: fb.Pose) -> Non
         np.testing.assert_allclose(pose.tip, by_hand.tip, rtol=0.0, atol=1e-12)
 
 
+def test_changes_say_what_they_are_and_act_together(paper: fb.Plant, paper_pose: fb.Pose) -> None:
+    """A robot that is heavier, softer and bent at once is the one built by hand; labels name joints from 1."""
+    labels = [change.label for change in fb.eight_changes(2)]
+    assert labels[:4] == ["base stiffness +20 %", "base stiffness -20 %", "last link +10 %", "last link -10 %"]
+    assert labels[4:] == ["joint 1 +0.1", "joint 1 -0.1", "joint 2 +0.1", "joint 2 -0.1"]
+    change = fb.Changed("", base_stiffness=0.5, last_link=10.0, joints=((1, 0.3),))
+    found = fb.changed_pose(paper_pose, change)
+    by_hand = bench(paper, {"base": 0.5, "last": 10.0}).at(np.add(paper_pose.q[1:], [0.0, 0.3]))
+    np.testing.assert_allclose(found.M, by_hand.M, rtol=1e-12, atol=1e-12 * np.abs(by_hand.M).max())
+    np.testing.assert_allclose(found.K, by_hand.K, rtol=1e-12, atol=0.0)
+
+
 def radius_by_scipy(pose: fb.Pose, gains: fb.Gains, sensing: fb.Sensing) -> float:
     """Spectral radius of the sampled task PD at a pose with both delays, put together from scipy's discretisation."""
     N, n, k, h = pose.arm.N, pose.arm.n, pose.arm.k, sensing.step
