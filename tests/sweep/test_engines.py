@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import warnings
 from dataclasses import replace
 
@@ -149,3 +150,11 @@ def test_exact_design_measures_are_the_design(paper: fb.Plant) -> None:
         radius = made.certificate.algebraic_loop_radius
         assert found.values["exact_radius"][cell] == pytest.approx(radius, rel=1e-8)
     assert 5 < feasible < POSES
+
+
+def test_a_formula_can_be_sent_to_another_process(paper: fb.Plant) -> None:
+    """Measures by their names, the rest by value: the recipe is the same."""
+    sent = Formula(paper.arm, tuple(fb.MEASURES.values()), (0, 1), (0.0, 0.0), ("payload",), 0.1 * np.eye(2))
+    got = pickle.loads(pickle.dumps(sent))
+    assert all(one is other for one, other in zip(got.measures, sent.measures, strict=True))
+    assert got.recipe == sent.recipe

@@ -95,8 +95,16 @@ class Measure(NamedTuple):
         """Whether it reads modes, one or all of them."""
         return self.per_mode or self.all_modes
 
+    def __reduce__(self) -> tuple[Callable[[str], Measure], tuple[str]]:
+        """Sent to another process by its name."""
+        return _named, (self.name,)
+
 
 MEASURES: dict[str, Measure] = {}
+
+
+def _named(name: str) -> Measure:
+    return MEASURES[name]
 
 
 def measure(
