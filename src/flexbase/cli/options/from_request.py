@@ -18,7 +18,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import field, fields, make_dataclass
 from functools import partial
 from types import UnionType
-from typing import Annotated, Any, Protocol, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from cyclopts import Group, Parameter
 
@@ -26,6 +26,10 @@ from flexbase.checks import choose
 from flexbase.cli.options.common import option
 from flexbase.cli.options.values import Range, Vector, counts, names, number, number_or_numbers, numbers, ranges, whole
 from flexbase.requests import Option, options_of
+
+if TYPE_CHECKING:  # the methods themselves take long to import
+    from flexbase.compensators import Method
+    from flexbase.synthesis.registry import HardwareMethod
 
 Request = TypeVar("Request")
 Reader = Callable[[str, str], Any]
@@ -67,16 +71,9 @@ def from_request(
     return decorate
 
 
-class HasOptions(Protocol):
-    """A registered method: `Method`, `HardwareMethod`."""
-
-    @property
-    def options(self) -> tuple[Option, ...]:
-        """What its signature says."""
-        ...
-
-
-def from_methods(group: Group, methods: Mapping[str, HasOptions]) -> Callable[[type[Request]], type[Request]]:
+def from_methods(
+    group: Group, methods: Mapping[str, Method | HardwareMethod]
+) -> Callable[[type[Request]], type[Request]]:
     """Decorator of a dataclass that adds the options of all methods, each None where it is not given.
 
     Methods that share an option share it here; the help says what it means to which.

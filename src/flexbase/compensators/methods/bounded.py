@@ -23,13 +23,7 @@ SPREAD = 0.5  # of the random start's entries
 
 
 @method("bounded", "any base, arm and task: least passivity shortage by descent, the radius bounded by construction")
-def bounded(
-    pose: Pose,
-    *,
-    radius: Radius = RADIUS,
-    seed: Seed = 0,
-    loop: Asked = None,
-) -> Compensator:
+def bounded(pose: Pose, *, radius: Radius = RADIUS, seed: Seed = 0, loop: Asked = None) -> Compensator:
     """Least -sum_i w_i / (4 zeta_i omega_i) over all gains with rho(Ms^-1 E) < radius.  [theory §7]
 
     Assumes a compliant base; natural frequencies are not aimed at; leaves gravity stiffness out of the equations. BFGS

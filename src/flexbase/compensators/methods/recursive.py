@@ -39,12 +39,5 @@ def recursive(
     if natural_frequency is not None:
         targets = [positive_number("natural frequency", natural_frequency, "rad/s")]
     return shape_recursively(
-        pose,
-        "recursive",
-        targets,
-        step=step,
-        iterations=iterations,
-        derivatives=derivatives,
-        seed=seed,
-        loop=loop,
+        pose, "recursive", targets, step=step, iterations=iterations, derivatives=derivatives, seed=seed, loop=loop
     )

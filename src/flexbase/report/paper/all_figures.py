@@ -44,10 +44,7 @@ def reproduce(folder: Path, progress: Progress = no_progress) -> PaperTable:
     step("designing at the work point")
     shaped = shaping(case.pose)
     step("mapping the robustness")
-    without, compensated = (
-        robustness_map(case.plant),
-        robustness_map(case.plant, shaped.recursion),
-    )
+    without, compensated = (robustness_map(case.plant), robustness_map(case.plant, shaped.recursion))
     step("simulating the move")
     settled = settling(case.plant, shaped.recursion)
     field = ellipse_field(case.plant, progress=lambda what, done, total: step(f"{what} {done + 1} of {total}"))

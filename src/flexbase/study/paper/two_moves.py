@@ -23,7 +23,4 @@ class Settling:
 
 def settling(plant: Plant, compensator: HasGain) -> Settling:
     """Simulate both runs with the project's task gains."""
-    return Settling(
-        simulate(plant, START_TIP, DESIGN_TIP),
-        simulate(plant, START_TIP, DESIGN_TIP, compensator),
-    )
+    return Settling(simulate(plant, START_TIP, DESIGN_TIP), simulate(plant, START_TIP, DESIGN_TIP, compensator))
