@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple, TypeVar, overload
+from typing import Any, NamedTuple, TypeVar, cast
 
 import numpy as np
 
-T = TypeVar("T")
-A = TypeVar("A", bound=np.ndarray)
+V = TypeVar("V", bound=np.ndarray | Sequence[Any])
 
 
 class Blocks(NamedTuple):
@@ -28,32 +27,19 @@ class Parts(NamedTuple):
     passive: tuple[int, ...]
     active: tuple[int, ...]
 
-    @overload
-    def base(self, values: A) -> A: ...
-    @overload
-    def base(self, values: Sequence[T]) -> tuple[T, ...]: ...
-    def base(self, values: Any) -> Any:
+    def base(self, values: V) -> V:
         """What belongs to the passive joints: m of N."""
         return _chosen(values, self.passive)
 
-    @overload
-    def arm(self, values: A) -> A: ...
-    @overload
-    def arm(self, values: Sequence[T]) -> tuple[T, ...]: ...
-    def arm(self, values: Any) -> Any:
+    def arm(self, values: V) -> V:
         """What belongs to the active joints: n of N."""
         return _chosen(values, self.active)
 
-    @overload
-    def whole(self, base: A, arm: A) -> A: ...
-    @overload
-    def whole(self, base: Sequence[T], arm: Sequence[T]) -> tuple[T, ...]: ...
-    def whole(self, base: Any, arm: Any) -> Any:
+    def whole(self, base: V, arm: V) -> V:
         """Both parts together, in the order of the chain."""
-        order = np.argsort((*self.passive, *self.active))
-        if isinstance(base, np.ndarray) and isinstance(arm, np.ndarray):
-            return _chosen(np.concatenate([base, arm], axis=-1), order)
-        return _chosen((*base, *arm), order)
+        arrays = isinstance(base, np.ndarray) and isinstance(arm, np.ndarray)
+        joined: Any = np.concatenate([base, arm], axis=-1) if arrays else (*base, *arm)
+        return cast(V, _chosen(joined, np.argsort((*self.passive, *self.active))))
 
     def blocks(self, matrix: Any) -> Blocks:
         """The parts of a symmetric matrix, N x N."""
@@ -83,7 +69,7 @@ def base_first(m: int, N: int) -> Parts:
     return Parts(tuple(range(m)), tuple(range(m, N)))
 
 
-def _chosen(values: Any, joints: Sequence[int] | np.ndarray) -> Any:
+def _chosen(values: V, joints: Sequence[int] | np.ndarray) -> V:
     if isinstance(values, np.ndarray):
-        return np.take(values, np.asarray(joints, dtype=int), axis=-1)
-    return tuple(values[joint] for joint in joints)
+        return cast(V, np.take(values, np.asarray(joints, dtype=int), axis=-1))
+    return cast(V, tuple(values[joint] for joint in joints))
