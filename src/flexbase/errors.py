@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import difflib
 import importlib
+import json
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from pkgutil import iter_modules
 from types import ModuleType
+from typing import Any
 
 
 class FlexbaseError(Exception):
@@ -69,6 +71,21 @@ def writing(path: str | Path) -> Iterator[None]:
     except OSError as fault:
         why = fault.strerror or fault
         raise InputError(f"{path}: cannot be written ({why}). Give a file in an existing folder.") from fault
+
+
+def read_document(path: str | Path, kind: str, form: str, mend: str) -> dict[str, Any]:
+    """A JSON document whose "format" is `form`; kind : what it holds. Raises InputError, ending in `mend`."""
+    try:
+        document = json.loads(Path(path).read_text(encoding="utf-8"))
+    except OSError as fault:
+        raise InputError(f"{path}: cannot be read ({fault.strerror}). {mend}") from fault
+    except json.JSONDecodeError as fault:
+        raise InputError(f"{path}: not valid JSON, line {fault.lineno}, column {fault.colno}. {mend}") from fault
+    except (ValueError, RecursionError) as fault:
+        raise InputError(f"{path}: not a JSON text. {mend}") from fault
+    if not isinstance(document, dict) or document.get("format") != form:
+        raise InputError(f"{path}: not a {kind}. {mend}")
+    return document
 
 
 def nearest_name(name: str, valid: Iterable[str]) -> str:

@@ -67,7 +67,7 @@ def test_files_that_cannot_be(paper: fb.Plant, paper_pose: fb.Pose, tmp_path: Pa
     with pytest.raises(fb.InputError, match="cannot be read"):
         fb.load_controller(tmp_path / "none.json", paper)
     (tmp_path / "text").write_text("{")
-    with pytest.raises(fb.InputError, match="not a JSON text"):
+    with pytest.raises(fb.InputError, match="not valid JSON, line 1, column 2"):
         fb.load_controller(tmp_path / "text", paper)
     with pytest.raises(fb.InputError, match="plant: str given"):
         fb.load_controller(tmp_path / "text", "ueda2003")  # type: ignore[arg-type]

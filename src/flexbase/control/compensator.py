@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from flexbase.checks import Array, check_symmetric, finite_array
-from flexbase.errors import InputError, writing
+from flexbase.errors import InputError, read_document, writing
 from flexbase.sheets.numbers import listed, matrix, number
 from flexbase.sheets.sheet import Column, Facts, Note, Sheet, Table, answer, facts, make_sheet, table, words
 from flexbase.sheets.told import Told
@@ -136,16 +136,7 @@ class Compensator(Told):
 
 def load_compensator(path: str | Path) -> Compensator:
     """Read a compensator that `save` wrote. Raises InputError."""
-    try:
-        document = json.loads(Path(path).read_text(encoding="utf-8"))
-    except OSError as fault:
-        raise InputError(f"{path}: cannot be read ({fault.strerror}). {MEND}") from fault
-    except json.JSONDecodeError as fault:
-        raise InputError(f"{path}: not valid JSON, line {fault.lineno}, column {fault.colno}. {MEND}") from fault
-    except (ValueError, RecursionError) as fault:
-        raise InputError(f"{path}: not a JSON text. {MEND}") from fault
-    if not isinstance(document, dict) or document.get("format") != FORMAT:
-        raise InputError(f"{path}: not a compensator. {MEND}")
+    document = read_document(path, "compensator", FORMAT, MEND)
     try:
         E = np.atleast_2d(finite_array(f"{path}: E", document["E"]))
         facts: dict[str, Any] = {

@@ -10,7 +10,7 @@ import numpy as np
 
 from flexbase.cautions import caution
 from flexbase.checks import Array, finite_array, positive_number
-from flexbase.errors import InputError, writing
+from flexbase.errors import InputError, read_document, writing
 from flexbase.linear.discrete.system import Discrete
 from flexbase.model.digest import model_digest
 from flexbase.model.sensing import Sensing, checked_sensing
@@ -40,14 +40,7 @@ def load_controller(path: str | Path, plant: Plant) -> SampledController:
     Warns where the robot's numbers have changed since. Raises InputError, also for another robot.
     """
     check_plant(plant)
-    try:
-        document = json.loads(Path(path).read_text(encoding="utf-8"))
-    except OSError as fault:
-        raise InputError(f"{path}: cannot be read ({fault.strerror}). {MEND}") from fault
-    except (ValueError, RecursionError) as fault:
-        raise InputError(f"{path}: not a JSON text. {MEND}") from fault
-    if not isinstance(document, dict) or document.get("format") != FORMAT:
-        raise InputError(f"{path}: not a controller. {MEND}")
+    document = read_document(path, "controller", FORMAT, MEND)
     try:
         return _read(path, document, plant)
     except (KeyError, TypeError, AttributeError) as fault:
