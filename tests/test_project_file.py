@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 import flexbase
 from flexbase import FlexbaseWarning, InputError
-from flexbase.model.files.project import LARGEST_FILE, bundled, parse_project
+from flexbase.model.files.bundled import robots
+from flexbase.model.files.project import LARGEST_FILE, parse_project
 from systems.planar import PAPER, planar_text
 
 TWO_JOINT_BASE = planar_text([0.2, 0.1, 0.3, 0.25], m=2)
@@ -153,11 +154,11 @@ def test_the_first_of_several_faults_is_named_and_the_others_counted():
     assert "massa" in refusal(swap("mass = 5.0", "massa = 5.0"))
 
 
-@pytest.mark.parametrize("name", sorted(bundled()))
+@pytest.mark.parametrize("name", sorted(robots().descriptions))
 def test_bundled_robots_load(name):
     """Every bundled project loads without a warning, under its own name, with a description."""
     assert flexbase.load(name).name == name
-    assert bundled()[name]
+    assert robots().descriptions[name]
 
 
 def same(one, other):

@@ -20,6 +20,7 @@ from flexbase.linear.passivity.verdict import Verdict
 from flexbase.linear.second_order import SecondOrder
 from flexbase.measures import MEASURES
 from flexbase.measures.manipulability import Ellipsoid, Manipulability, manipulability
+from flexbase.model.files.bundled import Robots, robots
 from flexbase.model.loop import Gain, Loop
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
@@ -110,6 +111,7 @@ __all__ = [
     "Push",
     "Recommendation",
     "Region",
+    "Robots",
     "RobustCurves",
     "RobustPoints",
     "Run",
@@ -153,6 +155,7 @@ __all__ = [
     "read_targets",
     "recommend",
     "region",
+    "robots",
     "robust_curves",
     "robust_points",
     "safe_gain",

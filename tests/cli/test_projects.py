@@ -13,7 +13,8 @@ import pytest
 
 import flexbase as fb
 from flexbase.cli.commands.init import schema_text, template
-from flexbase.model.files.project import bundled, parse_project
+from flexbase.model.files.bundled import robots
+from flexbase.model.files.project import parse_project
 from flexbase.study.describe import describe
 
 from .conftest import TIP, Call
@@ -68,8 +69,8 @@ def test_describe_has_a_summary(paper: fb.Plant, paper_pose: fb.Pose) -> None:
 
 def test_robots_lists_what_is_bundled(call: Call) -> None:
     shown, found = call("robots"), call("robots", "--json").document("robots")
-    assert {robot["name"]: robot["description"] for robot in found["robots"]} == bundled()
-    assert all(name in shown.out for name in bundled())
+    assert {robot["name"]: robot["description"] for robot in found["robots"]} == robots().descriptions
+    assert all(name in shown.out for name in robots().descriptions)
 
 
 def test_init_writes_a_project_that_loads_and_never_overwrites(call: Call, tmp_path: Path) -> None:

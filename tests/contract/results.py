@@ -137,6 +137,7 @@ EXAMPLES: dict[str, Callable[[], Told]] = {
     "robust curves": lambda: fb.robust_curves(paper(), cells=60),
     "robust points": lambda: fb.robust_points(paper(), count=20),
     "robust points, none": lambda: no_points(),
+    "robots": fb.robots,
     "paper": lambda: PaperTable((PaperRow("w_1", -0.07, -0.0708, remark="read off"),)),
     "hardware verdict": lambda: fb.hardware_verdict(controller("coprime")),
     "hardware verdict, unstable": lambda: fb.hardware_verdict(controller("exact")),

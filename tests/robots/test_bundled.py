@@ -17,7 +17,7 @@ from flexbase.cli.main import run
 from flexbase.dynamics.forces import bias_forces
 from flexbase.dynamics.inertia import mass_matrix
 from flexbase.dynamics.kinematics import forward, jacobian
-from flexbase.model.files.project import bundled
+from flexbase.model.files.bundled import robots
 from flexbase.simulation.plants.mujoco_plant import mujoco_plant
 
 from .witness import LIBRARY, Answer, Witness, tables
@@ -29,7 +29,7 @@ EQUAL = 1e-10
 EQUAL_MODES = 1e-8
 SAME_PATH = 1e-6  # m or rad of tip error between the two engines
 DOCS = Path(__file__).parents[2] / "docs"
-NAMES = sorted(bundled())
+NAMES = sorted(robots().descriptions)
 FILES = {"ur5e": "tool0", "panda": "panda_hand_tcp", "iiwa": "lbr_iiwa_link_7", "scara": "tool"}
 
 
@@ -150,7 +150,7 @@ def test_modes_are_those_of_the_full_state_space(name):
         assert found.rigid_mode == pytest.approx(R_0, rel=0.0, abs=EQUAL_MODES * np.abs(R_0).max())
 
 
-@pytest.mark.parametrize("name", sorted(bundled().keys() - {"ueda2003"}))
+@pytest.mark.parametrize("name", sorted(robots().descriptions.keys() - {"ueda2003"}))
 def test_bases_vibrate_as_bases_do(name):
     """2 to 60 Hz and less than a tenth of critical damping, wherever the arm stands. The paper's base is its own."""
     for pose in poses(fb.load(name), 20, seed=6):
@@ -165,7 +165,7 @@ def test_bases_vibrate_as_bases_do(name):
 @pytest.mark.parametrize("name", NAMES)
 def test_each_is_named_and_described(name):
     """A line in `flexbase robots`, its own name inside, gains to simulate with, a place in the docs; no warning."""
-    assert 10 < len(bundled()[name]) <= 120
+    assert 10 < len(robots().descriptions[name]) <= 120
     plant = fb.load(name)
     assert plant.name == name
     assert plant.arm.gains is not None

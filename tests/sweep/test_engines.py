@@ -13,7 +13,7 @@ import flexbase as fb
 from flexbase.linear.closed_loop import abscissa, close_loop
 from flexbase.measures import MEASURES
 from flexbase.model.base import make_base
-from flexbase.model.files.project import bundled
+from flexbase.model.files.bundled import robots
 from flexbase.model.mechanism import Body, with_payload
 from flexbase.sweeps.engine.evaluate import Engine, compiled
 from flexbase.sweeps.engine.formula import Formula
@@ -36,7 +36,7 @@ def condition_numbers(plant: fb.Plant, joints: np.ndarray) -> np.ndarray:
     return np.array([np.linalg.cond(plant.at(q).M) for q in joints.T])
 
 
-@pytest.mark.parametrize("name", bundled())
+@pytest.mark.parametrize("name", robots().descriptions)
 def test_kernel_and_rows_are_the_scalar_path(name: str) -> None:
     """Every measure on floats, one configuration after the other, to 1e-12 times cond(M)."""
     plant = fb.load(name)

@@ -5,9 +5,8 @@ from __future__ import annotations
 from cyclopts import App
 
 from flexbase.cli.options.common import Json
-from flexbase.cli.terminal.show import say
-from flexbase.model.files.project import bundled
-from flexbase.sheets.sheet import make_sheet, table, words
+from flexbase.cli.terminal.show import show
+from flexbase.model.files.bundled import robots as robots_of
 
 app = App(
     name="robots",
@@ -20,6 +19,4 @@ app = App(
 @app.default
 def robots(*, json: Json = False) -> None:
     """Names that stand for ROBOT, and what each is."""
-    content = {"robots": [{"name": name, "description": text} for name, text in bundled().items()]}
-    listed = table([words("robot"), words("what it is")], bundled().items())
-    say("robots", content, make_sheet("Bundled robots", "", listed), json)
+    show("robots", robots_of(), json)

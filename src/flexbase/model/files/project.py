@@ -12,6 +12,7 @@ from flexbase.cautions import caution
 from flexbase.checks import check_length
 from flexbase.errors import InputError, nearest_name
 from flexbase.model.files.base_table import InertiaAt, base_of
+from flexbase.model.files.bundled import LIBRARY, robots
 from flexbase.model.files.messages import first_fault
 from flexbase.model.files.robot_table import mechanism_of
 from flexbase.model.files.schema import BaseTable, ProjectFile, RobotTable, TaskTable
@@ -21,17 +22,6 @@ from flexbase.model.task import ROWS, Gains, Task, make_gains
 
 LARGEST_FILE = 1_000_000  # bytes; a project file is a page
 ROBOT_FILES = (".urdf", ".xml", ".mjcf")
-LIBRARY = "flexbase.model.library"
-
-
-def bundled() -> dict[str, str]:
-    """Names of the bundled projects, each with its one-line description (the first comment of its file)."""
-    found = {}
-    for entry in sorted(resources.files(LIBRARY).iterdir(), key=lambda item: item.name):
-        if entry.name.endswith(".toml"):
-            first_line = entry.read_text("utf-8").partition("\n")[0]
-            found[entry.name.removesuffix(".toml")] = first_line.lstrip("# ").strip()
-    return found
 
 
 def load_project(robot: str | Path, inertia_at: InertiaAt) -> MountedArm:
@@ -42,12 +32,12 @@ def load_project(robot: str | Path, inertia_at: InertiaAt) -> MountedArm:
     """
     if not isinstance(robot, str | Path):
         raise InputError(f"robot: {type(robot).__name__} given. Give a bundled name or a path.")
-    if isinstance(robot, str) and robot in bundled():
+    if isinstance(robot, str) and robot in robots().descriptions:
         with resources.as_file(resources.files(LIBRARY)) as folder:
             return parse_project((folder / f"{robot}.toml").read_text("utf-8"), robot, inertia_at, folder)
     path = Path(robot)
     if not str(robot) or not _exists(path):
-        hint = nearest_name(str(robot), bundled())
+        hint = nearest_name(str(robot), robots().descriptions)
         raise InputError(f'"{str(robot)[:80]}": neither a bundled robot nor a file. {hint}')
     if not path.is_file():
         raise InputError(f"{robot}: is not a file. Give the path of a project file (.toml).")
