@@ -61,5 +61,5 @@ def map_verdicts(
         how = replace(execution, store=store_of(out))
         found = hardware_map(plant, method, cells, loop=meant, execution=how, progress=progress)
     write_map(out, found)
-    say("hardware-map", plain(found), sheet_of(found), json, out)
+    say("hardware-map", plain(found) if json else {}, sheet_of(found), json, out)
     return None

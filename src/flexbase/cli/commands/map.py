@@ -58,4 +58,4 @@ def map_cells(
     ask = compared if difference else swept
     found = ask(plant, measures, cells, how, used)
     write_map(out, found)
-    say("map", numbers(found), sheet_of(found), json, out)
+    say("map", numbers(found) if json else {}, sheet_of(found), json, out)  # of a large store there is no document
