@@ -89,13 +89,16 @@ def test_tip_cells_of_a_spatial_arm_reach_their_targets() -> None:
         ({"seed": -1}, "seed: -1 is below 0"),
         ({"resume": True}, "nothing to resume"),
         ({"workers": 0}, "workers: 0"),
+        ({"workers": 2, "scheduler": "tcp://127.0.0.1:9"}, "a scheduler is given too"),
         ({"workers": 1.5}, "workers: 1.5"),
         ({"measures": ["robustnes"]}, "robustness"),
     ],
 )
 def test_wrong_questions_are_refused(paper: fb.Plant, options: dict, message: str) -> None:
     measures = options.pop("measures", ["robustness"])
-    execution = fb.Execution(**{name: options.pop(name) for name in ("engine", "resume", "workers") if name in options})
+    execution = fb.Execution(
+        **{name: options.pop(name) for name in ("engine", "resume", "workers", "scheduler") if name in options}
+    )
     with pytest.raises(fb.InputError, match=message):
         fb.sweep(paper, measures, fb.Cells(**options), execution=execution)
 

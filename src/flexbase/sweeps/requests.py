@@ -70,7 +70,8 @@ class Execution:
 
     engine : "compiled", "rows" (NumPy, no warm-up), or "auto", by the number of cells
     store : a Zarr folder that blocks are written to as they finish; `resume` goes on with one that was interrupted
-    scheduler, workers : run the blocks on a Dask cluster, running or started here
+    scheduler : address of a Dask cluster that runs the blocks; workers : or so many processes of this computer; else
+        formulas run on all its cores, and poses are asked in a process a core
     """
 
     engine: str = asked(AUTO, "by the cells", choices=ENGINES)
@@ -84,6 +85,8 @@ class Execution:
         check_request("execution", self, Execution)
         if self.resume and self.store is None:
             raise InputError("resume: there is nothing to resume without a store. Give --out NAME.zarr.")
+        if self.scheduler is not None and self.workers is not None:
+            raise InputError("workers: a scheduler is given too, and it has its own. Give one of them.")
         if self.workers is not None and self.workers < 1:
             raise InputError(f"workers: {self.workers} is none. Give a whole number from 1 up, or None.")
         return self
