@@ -15,15 +15,13 @@ from flexbase.cli.options.pose import Robot, compensator_of
 from flexbase.cli.options.sensing import SensingOptions
 from flexbase.cli.options.tips import tips_of
 from flexbase.cli.terminal.cells_bar import cells_bar
-from flexbase.cli.terminal.map_files import check_map_out, store_of, write_map
+from flexbase.cli.terminal.map_files import check_map_out, show_map, store_of
 from flexbase.cli.terminal.out import OutFile
-from flexbase.cli.terminal.show import say, show
+from flexbase.cli.terminal.show import show
 from flexbase.model.loop import Loop
 from flexbase.plant import load
 from flexbase.study.running.hardware_map import hardware_map
 from flexbase.study.running.hardware_path import hardware_path
-from flexbase.sweeps import document as plain
-from flexbase.sweeps.answers.summary import sheet_of
 
 app = App(
     name="hardware-map",
@@ -60,6 +58,5 @@ def map_verdicts(
             return show("hardware-path", hardware_path(plant, tips_of(path), method, loop=meant, **given), json)
         how = replace(execution, store=store_of(out))
         found = hardware_map(plant, method, cells, loop=meant, execution=how, progress=progress)
-    write_map(out, found)
-    say("hardware-map", plain(found) if json else {}, sheet_of(found), json, out)
+    show_map("hardware-map", found, json, out)
     return None

@@ -11,14 +11,11 @@ from flexbase.cli.options.cells import CellOptions, ExecutionOptions
 from flexbase.cli.options.common import CompensatorFile, Json, option
 from flexbase.cli.options.pose import Robot, compensator_of
 from flexbase.cli.options.values import Names, names
-from flexbase.cli.terminal.map_files import check_map_out, store_of, write_map
+from flexbase.cli.terminal.map_files import check_map_out, show_map, store_of
 from flexbase.cli.terminal.out import OutFile
-from flexbase.cli.terminal.show import say
 from flexbase.cli.terminal.sweeping import check_difference, compared, swept
 from flexbase.measures import MEASURES
 from flexbase.plant import load
-from flexbase.sweeps import document as numbers
-from flexbase.sweeps.answers.summary import sheet_of
 
 app = App(
     name="map",
@@ -57,5 +54,4 @@ def map_cells(
     how = replace(execution, store=store_of(out))
     ask = compared if difference else swept
     found = ask(plant, measures, cells, how, used)
-    write_map(out, found)
-    say("map", numbers(found) if json else {}, sheet_of(found), json, out)  # of a large store there is no document
+    show_map("map", found, json, out)

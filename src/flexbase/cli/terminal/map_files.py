@@ -1,4 +1,4 @@
-"""The files that a map is written to."""
+"""A map on the command line: the files that it is written to, then its document or its sheet."""
 
 from __future__ import annotations
 
@@ -6,10 +6,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from flexbase.cli.terminal.document import document
-from flexbase.cli.terminal.out import PICTURES, check_out, write_out
+from flexbase.cli.terminal.out import PICTURES, check_out, write_out, written
+from flexbase.cli.terminal.screen import put
 from flexbase.errors import InputError
 from flexbase.sweeps import document as numbers
 from flexbase.sweeps import save_csv, save_netcdf
+from flexbase.sweeps.answers.summary import sheet_of
 
 if TYPE_CHECKING:
     import xarray
@@ -35,14 +37,16 @@ def store_of(out: Path | None) -> Path | None:
     return out if out is not None and out.suffix.lower() == ".zarr" else None
 
 
-def write_map(out: Path | None, found: xarray.Dataset) -> None:
-    """Write a map as its suffix says; a store is written already. Raises InputError."""
+def show_map(command: str, found: xarray.Dataset, json: bool, out: Path | None) -> None:
+    """Write what `--out` asks for, as its suffix says; then all cells as one document, or the sheet. Raises InputError.
+
+    A store is written already.
+    """
     suffix = "" if out is None else out.suffix.lower()
     if suffix == ".csv":
         save_csv(found, str(out))
     elif suffix == ".nc":
         save_netcdf(found, str(out))
-    elif suffix == ".json" and out is not None:
-        out.write_text(document("map", numbers(found)) + "\n", "utf-8")
-    elif suffix not in ("", ".zarr"):
-        write_out(out, "map", found, {})
+    elif suffix != ".zarr":
+        write_out(out, command, found, numbers(found) if suffix == ".json" else {})
+    put(document(command, numbers(found))) if json else put(sheet_of(found), *written(out))
