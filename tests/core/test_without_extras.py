@@ -17,13 +17,13 @@ from flexbase.report.page.write import save_page
 MAPS, FAST, ROBOTS = "maps", "fast", "robots"
 EXTRAS = {"casadi", "clarabel", "control", "cvxpy", "distributed", "llvmlite", "llvmlite.binding"}
 EXTRAS |= {"mujoco", "pinocchio", "plotly", "zarr"}
+INSTALLED = [name for name in EXTRAS if find_spec(name.partition(".")[0])]
 
 
 @pytest.fixture(autouse=True)
 def hidden(monkeypatch):
-    for name in EXTRAS:
-        if find_spec(name.partition(".")[0]):
-            monkeypatch.setitem(sys.modules, name, None)
+    for name in INSTALLED:
+        monkeypatch.setitem(sys.modules, name, None)
 
 
 @pytest.mark.parametrize(

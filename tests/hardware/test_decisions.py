@@ -88,6 +88,9 @@ def test_the_worst_robot_by_scipy(paper: fb.Plant, paper_pose: fb.Pose) -> None:
     here = radius_by_scipy(paper_pose, soft, controller.sensing)
     verdict = fb.hardware_verdict(controller)
     assert verdict.spectral_radius == pytest.approx(here, abs=1e-9)
+    weak = radius_by_scipy(bench(paper, {"base": 0.8}).at(paper_pose.q[1:]), soft, controller.sensing)
+    assert here < weak <= verdict.worst_radius + 1e-9
+    assert verdict.worst_change == "joint 2 +0.1"
     # the controller keeps the Jacobian of its own pose: only robots at the same joints are so simply put together
     for label, plant in (
         ("base stiffness +20 %", bench(paper, {"base": 1.2})),
@@ -169,6 +172,7 @@ def test_a_safe_gain_survives_the_changed_robots(paper_pose: fb.Pose, monkeypatc
     assert found.stable == pytest.approx(100.0)
     assert found.safe is not None
     assert 2.0 / 1.05 <= found.safe <= 2.0  # bisected to 4 %
+    assert (gains.SMALLEST, gains.LARGEST, gains.LOOKS, gains.HALVINGS) == (1e-3, 1e2, 11, 5)
 
 
 def candidate(verdict: HardwareVerdict, name: str, **changes: float) -> Candidate:

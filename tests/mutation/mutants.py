@@ -77,6 +77,8 @@ def _places(tree: ast.Module) -> Iterator[Place]:
 def _below(node: ast.AST, where: str) -> Iterator[Place]:
     if isinstance(node, ast.FunctionDef | ast.ClassDef):
         where = f"{where}.{node.name}".lstrip(".")
+    if where.rpartition(".")[2].startswith("sheet"):  # what sheets say is no decision: tests/contract/test_results.py
+        return
     if isinstance(node, ast.Raise) or (isinstance(node, ast.keyword) and node.arg in SILENT):
         return
     for field, value in ast.iter_fields(node):
