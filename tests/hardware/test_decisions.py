@@ -128,6 +128,54 @@ def test_grades(
     assert (UNSTABLE, STABLE, ALMOST, SAFE, GOOD_MARGIN) == (0, 1, 2, 3, 0.3)
 
 
+def found_with(pose: fb.Pose, here: float, changed: list[float], margins: tuple[float, float] = (0.3, 0.3)) -> Judged:
+    """A judged loop whose spectral radii and margins are given."""
+    controller = fb.make_controller(pose, "none", FAST)
+    kept: dict[object, object] = {("radius", i): radius for i, radius in enumerate([here, *changed])}
+    judged = Judged(
+        controller, robots_at(pose, controller.sensing, [fb.Changed(f"{i}") for i in range(len(changed))]), kept
+    )
+    vars(judged)["margins"] = margins
+    return judged
+
+
+def test_radii_decide(paper_pose: fb.Pose) -> None:
+    """Below 1 is stable, 1 is not; what failed and what is worst are named, and one that fails fails all."""
+    found = found_with(paper_pose, 0.9, [0.5, 1.2, 0.99, 1.0, float("nan")])
+    assert (found.stable, found.survives, found.failed) == (True, False, ("1", "3", "4"))
+    found = found_with(paper_pose, 0.9, [0.5, 1.2, 0.99, 1.0])
+    assert (found.worst_radius, found.worst_change, found.grade) == (1.2, "1", ALMOST)
+    assert not found.accepted()
+    found = found_with(paper_pose, 0.9, [0.99, 0.5])
+    assert (found.survives, found.failed, found.worst_radius, found.worst_change) == (True, (), 0.99, "0")
+    assert (found.accepted(), found.accepted(0.31), found.grade) == (True, False, SAFE)
+    assert not found_with(paper_pose, 0.9, [1.0]).survives
+    assert not found_with(paper_pose, 0.9, [0.5, 1.0]).survives
+    for lost in (1.0, 5.0):
+        found = found_with(paper_pose, lost, [0.5])
+        assert (found.stable, found.survives, found.accepted(), found.grade) == (False, False, False, UNSTABLE)
+    alone = found_with(paper_pose, 0.9, [])
+    assert (alone.survives, alone.worst_radius, alone.worst_change) == (True, 0.9, "none")
+
+
+@pytest.mark.parametrize("margins", [(0.29, 5.0), (5.0, 0.29)])
+def test_both_margins_decide(paper_pose: fb.Pose, margins: tuple[float, float]) -> None:
+    found = found_with(paper_pose, 0.9, [0.9], margins)
+    assert (found.has_margin(), found.has_margin(0.29), found.accepted(), found.grade) == (False, True, False, ALMOST)
+    assert found_with(paper_pose, 0.9, [1.1], margins).grade == STABLE
+
+
+def test_an_unstable_loop_has_no_margin_no_stiffness_and_corrects_nothing(paper_pose: fb.Pose) -> None:
+    controller = fb.make_controller(paper_pose, "none", FAST)
+    found = Judged(controller, robots_at(paper_pose, controller.sensing))
+    assert not found.stable
+    assert (found.margins, found.stiffness, found.correction) == ((0.0, 0.0), 0.0, 0.0)
+    assert not found.seems_accepted()
+    stable = found_with(paper_pose, 0.9, [])
+    stable._kept.update(dynamic_stiffness=3e4, tip_correction=0.25)
+    assert (stable.stiffness, stable.correction) == (3e4, 0.25)
+
+
 class Told:
     """A judged loop whose parts are given, for the places that decide by them."""
 

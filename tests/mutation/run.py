@@ -72,7 +72,7 @@ def _passes(module: str, mutant: Mutant | None, tests: list[str], longest: float
             os.dup2(nowhere, 1)
             os.dup2(nowhere, 2)
         os.chdir(ROOT)
-        os._exit(int(pytest.main(["-x", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", *tests])))
+        os._exit(int(pytest.main(["-x", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-m", "not slow", *tests])))
     return os.waitpid(child, 0)[1] == 0
 
 
