@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +10,8 @@ import pytest
 from scipy.signal import cont2discrete
 
 import flexbase as fb
+from flexbase.linear.discrete.disk_margin import grid_of
+from flexbase.linear.discrete.system import Discrete, feedback
 from flexbase.sampled import figures
 from flexbase.sampled.judged import ALMOST, GOOD_MARGIN, SAFE, STABLE, UNSTABLE, Judged, robots_at
 from flexbase.sampled.verdict import HardwareVerdict, verdict_of
@@ -128,6 +131,19 @@ def test_grades(
     assert (UNSTABLE, STABLE, ALMOST, SAFE, GOOD_MARGIN) == (0, 1, 2, 3, 0.3)
 
 
+def test_a_verdict_has_its_figures_and_no_others(verdict: HardwareVerdict) -> None:
+    """A margin that is not known is none; a wrong name is no attribute; copies keep what there is."""
+    for name in ("disk_margin_torque", "disk_margin_sensor"):
+        assert replace(verdict, figures={**FULL, name: None}).smaller_margin == 0.0
+    assert replace(verdict, figures=FULL).smaller_margin == 0.5
+    assert copy.copy(verdict).spectral_radius == verdict.figures["spectral_radius"]
+    with pytest.raises(AttributeError, match="no figure 'nose'"):
+        _ = verdict.nose
+
+
+FULL = {"disk_margin_torque": 0.7, "disk_margin_sensor": 0.5}
+
+
 def found_with(pose: fb.Pose, here: float, changed: list[float], margins: tuple[float, float] = (0.3, 0.3)) -> Judged:
     """A judged loop whose spectral radii and margins are given."""
     controller = fb.make_controller(pose, "none", FAST)
@@ -151,7 +167,8 @@ def test_radii_decide(paper_pose: fb.Pose) -> None:
     assert (found.accepted(), found.accepted(0.31), found.grade) == (True, False, SAFE)
     assert not found_with(paper_pose, 0.9, [1.0]).survives
     assert not found_with(paper_pose, 0.9, [0.5, 1.0]).survives
-    for lost in (1.0, 5.0):
+    assert found_with(paper_pose, 1.0 - 5e-12, []).stable
+    for lost in (1.0 - 5e-13, 1.0, 5.0):  # rounding decides on which side of 1 the first one lies
         found = found_with(paper_pose, lost, [0.5])
         assert (found.stable, found.survives, found.accepted(), found.grade) == (False, False, False, UNSTABLE)
     alone = found_with(paper_pose, 0.9, [])
@@ -163,6 +180,25 @@ def test_both_margins_decide(paper_pose: fb.Pose, margins: tuple[float, float]) 
     found = found_with(paper_pose, 0.9, [0.9], margins)
     assert (found.has_margin(), found.has_margin(0.29), found.accepted(), found.grade) == (False, True, False, ALMOST)
     assert found_with(paper_pose, 0.9, [1.1], margins).grade == STABLE
+
+
+def test_quick_margins_look_at_every_sensor_that_is_heard(paper_pose: fb.Pose) -> None:
+    """Tip error by a state only, joints by one torque only, accelerations not at all: loop gains with all channels.
+
+    K P by its six channels, at the same frequencies, to 1e-9; P K loses the rows of what is not heard.
+    """
+    made = fb.make_controller(paper_pose, "none", FAST)
+    B, D = np.zeros((2, 6)), np.zeros((2, 6))
+    B[0, 0], D[1, 2] = 1e-3, 0.2
+    system = Discrete(0.5 * np.eye(2), B, np.ones((2, 2)), D, made.system.step)
+    found = Judged(replace(made, system=system), robots_at(paper_pose, made.sensing))
+    plant = found.robots.at_one_rate
+    at_torques, at_sensors = found._gains_around()
+    assert at_sensors.shape[1:] == (2, 2)
+    used = [0, 2]
+    frequencies = grid_of(feedback(plant.select(used), system.select(inputs=used)))
+    wanted = system.transfer_function(frequencies) @ plant.transfer_function(frequencies)
+    np.testing.assert_allclose(at_torques, wanted, rtol=1e-9, atol=1e-9 * np.abs(wanted).max())
 
 
 def test_an_unstable_loop_has_no_margin_no_stiffness_and_corrects_nothing(paper_pose: fb.Pose) -> None:
