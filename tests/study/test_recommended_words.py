@@ -70,6 +70,10 @@ def test_where_it_is_not_safe_care_is_asked_for() -> None:
     assert "c: margin 0.20" in recommendation(A, candidate("c", disk_margin_torque=0.2)).lines()[4]
 
 
+def test_a_loop_at_rest_after_a_sample_takes_no_time() -> None:
+    assert "time constant 0 ms" in recommendation(candidate("a", time_constant_s=None)).lines()[2]
+
+
 def test_only_four_others_are_named() -> None:
     assert recommendation(A, *(candidate(name) for name in "bcdef")).lines()[4].count("runs too") == 4
 
