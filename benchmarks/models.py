@@ -34,7 +34,7 @@ def plant(name: str) -> fb.Plant:
 
 
 def robustness_of(name: str) -> Formula:
-    """Joints in, status and the robustness of every mode out: what `flexbase map --over joints` asks."""
+    """Joints in, status and the robustness of every mode out: what `flexbase sweep --over joints` asks."""
     arm = plant(name).arm
     return Formula(arm, (MEASURES["robustness"],), tuple(range(arm.n)), (0.0,) * arm.n)
 

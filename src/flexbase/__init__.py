@@ -1,5 +1,6 @@
 """flexbase: where may a manipulator on a flexible base be driven hard, and what makes it safe elsewhere."""
 
+from importlib import import_module
 from typing import Any
 
 from flexbase.compensators import METHODS, design
@@ -21,6 +22,7 @@ from flexbase.linear.second_order import SecondOrder
 from flexbase.measures import MEASURES
 from flexbase.measures.manipulability import Ellipsoid, Manipulability, manipulability
 from flexbase.model.files.bundled import Robots, robots
+from flexbase.model.files.start import init
 from flexbase.model.loop import Gain, Loop
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
@@ -44,8 +46,8 @@ from flexbase.simulation import (
     simulate_sampled_many,
 )
 from flexbase.simulation.plants.mjcf import to_mjcf
-from flexbase.study.agreement.study import Agreement, agreement_study
-from flexbase.study.describe import Description, describe
+from flexbase.study.agreement.study import Agreement, agreement
+from flexbase.study.check import Check, check
 from flexbase.study.layout.best_layout import Layout, layout
 from flexbase.study.layout.targets import read_targets
 from flexbase.study.montecarlo import Criterion, Draws, Fixed, Lognormal, MonteCarlo, Normal, Uniform, montecarlo
@@ -73,10 +75,10 @@ __all__ = [
     "Cells",
     "Certificate",
     "Changed",
+    "Check",
     "Comparison",
     "Compensator",
     "Criterion",
-    "Description",
     "Draws",
     "Ellipsoid",
     "Execution",
@@ -111,6 +113,7 @@ __all__ = [
     "Push",
     "Recommendation",
     "Region",
+    "Reproduction",
     "Robots",
     "RobustCurves",
     "RobustPoints",
@@ -128,18 +131,20 @@ __all__ = [
     "Unreachable",
     "Verdict",
     "__version__",
-    "agreement_study",
+    "agreement",
     "as_it_runs",
     "changed_pose",
+    "check",
     "compare",
-    "describe",
     "design",
     "difference",
+    "draw",
     "eight_changes",
     "hardware_map",
     "hardware_path",
     "hardware_study",
     "hardware_verdict",
+    "init",
     "layout",
     "linearise",
     "load",
@@ -155,6 +160,7 @@ __all__ = [
     "read_targets",
     "recommend",
     "region",
+    "reproduce",
     "robots",
     "robust_curves",
     "robust_points",
@@ -175,10 +181,26 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    """`fb.plot` and `fb.save_plot` on first use: drawing imports matplotlib, which takes most of a second."""
-    if name in ("plot", "save_plot"):
-        from flexbase.report import plot
+LATER = {  # what draws imports matplotlib, which takes most of a second
+    "Reproduction": "flexbase.study.paper.table",
+    "draw": "flexbase.report.draw",
+    "plot": "flexbase.report.plot",
+    "reproduce": "flexbase.report.paper.all_figures",
+    "save_plot": "flexbase.report.plot",
+}
+RENAMED = {
+    "Description": "Check",
+    "Probability": "MonteCarlo",
+    "agreement_study": "agreement",
+    "best_layout": "layout",
+    "best_posture": "postures",
+    "describe": "check",
+}
 
-        return getattr(plot, name)
-    raise AttributeError(f"module 'flexbase' has no attribute {name!r}")
+
+def __getattr__(name: str) -> Any:
+    """What draws, on first use; and what a name of before is called now."""
+    if name in LATER:
+        return getattr(import_module(LATER[name]), name)
+    now = f". It is now called {RENAMED[name]}" if name in RENAMED else ""
+    raise AttributeError(f"module 'flexbase' has no attribute {name!r}{now}")

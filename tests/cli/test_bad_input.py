@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from flexbase.cli.commands.init import template
+from flexbase.model.files.start import template
 
 from .conftest import TIP, Call
 
@@ -19,7 +19,7 @@ COMMAND_LINES = {
     "no robot": (("modes",), ("ROBOT", "flexbase modes --help")),
     "no pose": (("modes", "ueda2003"), ("--tip", "--joints")),
     "no pose for design": (("design", "ueda2003"), ("--tip", "--joints")),
-    "no pose for ellipsoid": (("ellipsoid", "ueda2003"), ("--tip", "--joints")),
+    "no pose for ellipsoid": (("manipulability", "ueda2003"), ("--tip", "--joints")),
     "no goal": (("simulate", "ueda2003", "--from", TIP), ("--to",)),
     "no value": (("modes", "ueda2003", "--tip"), ("--tip",)),
     "an option where a value should be": (("modes", "ueda2003", "--tip", "--json"), ("--tip", "--json")),
@@ -50,10 +50,10 @@ COMMAND_LINES = {
     "times": (("simulate", "ueda2003", "--from", TIP, "--to", TIP, "--switch", "0.5"), ("0.5", "0.4")),
     "NaN time": (("simulate", "ueda2003", "--from", TIP, "--to", TIP, "--end", "nan"), ("--end", "nan")),
     "trajectory": (("simulate", "ueda2003", "--from", TIP, "--to", TIP, "--trajectory", "quntic"), ("quintic",)),
-    "convention": (("ellipsoid", "ueda2003", *AT, "--convention", "forc"), ("--convention", '"force"')),
-    "measure": (("map", "ueda2003", "--measure", "robust"), ("robust", '"robustness"')),
-    "shape": (("map", "ueda2003", "--shape", "4,x"), ("--shape", "x")),
-    "over": (("map", "ueda2003", "--over", "nowhere"), ("nowhere", "tip", "joints")),
+    "convention": (("manipulability", "ueda2003", *AT, "--convention", "forc"), ("--convention", '"force"')),
+    "measure": (("sweep", "ueda2003", "--measure", "robust"), ("robust", '"robustness"')),
+    "shape": (("sweep", "ueda2003", "--shape", "4,x"), ("--shape", "x")),
+    "over": (("sweep", "ueda2003", "--over", "nowhere"), ("nowhere", "tip", "joints")),
     "missing compensator": (
         ("modes", "ueda2003", *AT, "--compensator", "nope.json"),
         ("--compensator", "nope.json", "design --out"),
@@ -63,7 +63,7 @@ COMMAND_LINES = {
     "engine": (("simulate", "ueda2003", "--from", TIP, "--to", TIP, "--plant", "mujco"), ("--plant:", '"mujoco"')),
     "suffix": (("modes", "ueda2003", *AT, "-o", "x.bmp"), ("--out", "x.bmp", ".png")),
     "picture of a compensator": (("design", "ueda2003", *AT, "-o", "x.png"), ("--out", "x.png", ".json")),
-    "no such folder": (("map", "ueda2003", "-o", "no/such/x.png"), ("--out", "no/such")),
+    "no such folder": (("sweep", "ueda2003", "-o", "no/such/x.png"), ("--out", "no/such")),
 }
 
 

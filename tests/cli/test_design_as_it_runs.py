@@ -29,17 +29,17 @@ def test_assumed_where_nothing_is_declared(call: Call) -> None:
     """Stderr stays clean, the status 0; the verdict says that its loop is assumed."""
     shown = call("design", "ueda2003", *AT)
     assert (shown.status, shown.err) == (0, "")
-    for words in ("stable here", "Unstable as it runs", "1000 Hz", "(assumed:", "flexbase hardware compares"):
+    for words in ("stable here", "Unstable as it runs", "1000 Hz", "(assumed:", "flexbase compare compares"):
         assert words in shown.out
     assert max(map(len, shown.out.splitlines())) <= 80
-    found = call("design", "ueda2003", *AT, "--json").document("design")["hardware"]
+    found = call("design", "ueda2003", *AT, "--json").document("design")["as_it_runs"]
     assert found["declared"] is False
     assert found["stable"] is False
     assert found["sensing"]["rate"] == 1000.0
 
 
 def test_declared_loop_is_the_projects(call: Call, declared: Path, paper_pose: fb.Pose) -> None:
-    found = call("design", declared, *AT, "--json").document("design")["hardware"]
+    found = call("design", declared, *AT, "--json").document("design")["as_it_runs"]
     assert found["declared"] is True
     expected = hardware_verdict(controller_for(paper_pose, "exact", Sensing(rate=4000.0)))
     assert found["spectral_radius"] == pytest.approx(expected.spectral_radius, rel=1e-6)
@@ -48,10 +48,10 @@ def test_declared_loop_is_the_projects(call: Call, declared: Path, paper_pose: f
 
 
 def test_options_stand_in_for_the_project(call: Call, declared: Path) -> None:
-    slow = call("design", declared, *AT, "--rate", "1000", "--json").document("design")["hardware"]
+    slow = call("design", declared, *AT, "--rate", "1000", "--json").document("design")["as_it_runs"]
     assert (slow["sensing"]["rate"], slow["stable"]) == (1000.0, False)
     two = call("design", declared, *AT, "--task-rate", "2000", "--compute-delay", "0", "--json").document("design")
-    assert (two["hardware"]["sensing"]["task_every"], two["hardware"]["sensing"]["compute_delay"]) == (2, 0)
+    assert (two["as_it_runs"]["sensing"]["task_every"], two["as_it_runs"]["sensing"]["compute_delay"]) == (2, 0)
     for words, said in (
         (("--rate", "-5"), "--rate: -5.0 must be above 0"),
         (("--task-rate", "300"), "--task-rate: 300 Hz does not divide the rate, 4000 Hz"),

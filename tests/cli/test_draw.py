@@ -9,7 +9,7 @@ import pytest
 
 from .conftest import Call
 
-SMALL = ("map", "ueda2003", "--shape", "9,7")
+SMALL = ("sweep", "ueda2003", "--shape", "9,7")
 
 
 @pytest.fixture
@@ -46,7 +46,7 @@ def test_a_file_is_drawn_against_another(call: Call, compensator_file: Path, tmp
 
 
 def test_a_difference_is_a_document(call: Call, compensator_file: Path) -> None:
-    found = call(*SMALL, "--compensator", compensator_file, "--difference", "--json").document("map")
+    found = call(*SMALL, "--compensator", compensator_file, "--difference", "--json").document("sweep")
     assert found["difference"] == "with compensator minus without compensator"
     assert found["status_codes"]["5"] == "ok before only"
 

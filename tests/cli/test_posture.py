@@ -21,23 +21,23 @@ def job(tmp_path: Path) -> Path:
 
 
 def test_posture_document_is_the_librarys(call: Call, paper: fb.Plant) -> None:
-    found = call("posture", "ueda2003", "--tip", "0.33,-0.25", "--json")
+    found = call("postures", "ueda2003", "--tip", "0.33,-0.25", "--json")
     assert (found.status, found.err) == (0, "")
-    assert found.document("posture") == fb.postures(paper, [0.33, -0.25]).to_dict()
-    one = call("posture", "ueda2003", "--tip", "0.33,-0.25", "--elbow", "+", "--measure", "alignment", "--json")
-    assert [each["branch"] for each in one.document("posture")["postures"]] == ["+"]
+    assert found.document("postures") == fb.postures(paper, [0.33, -0.25]).to_dict()
+    one = call("postures", "ueda2003", "--tip", "0.33,-0.25", "--elbow", "+", "--measure", "alignment", "--json")
+    assert [each["branch"] for each in one.document("postures")["postures"]] == ["+"]
 
 
 def test_compensator_is_used(call: Call, compensator_file: Path) -> None:
-    found = call("posture", "ueda2003", "--tip", "0.33,-0.25", "--compensator", compensator_file, "--json")
-    content = found.document("posture")
+    found = call("postures", "ueda2003", "--tip", "0.33,-0.25", "--compensator", compensator_file, "--json")
+    content = found.document("postures")
     assert content["compensated"] is True
     assert abs(content["postures"][0]["value"]) < 1e-12
 
 
-def test_rac_document_is_the_librarys(call: Call, paper: fb.Plant) -> None:
-    assert call("rac", "ueda2003", "--json").document("rac") == fb.robust_curves(paper).to_dict()
-    points = call("rac", "ueda2003", "--count", "20", "--json").document("rac")
+def test_robust_documents_are_the_librarys(call: Call, paper: fb.Plant) -> None:
+    assert call("robust-curves", "ueda2003", "--json").document("robust-curves") == fb.robust_curves(paper).to_dict()
+    points = call("robust-points", "ueda2003", "--count", "20", "--json").document("robust-points")
     assert points == fb.robust_points(paper, count=20).to_dict()
 
 
@@ -49,9 +49,9 @@ def test_layout_document_is_the_librarys(call: Call, paper: fb.Plant, job: Path)
 
 
 def test_tables_fit_and_name_what_counts(call: Call, job: Path) -> None:
-    posture = call("posture", "ur5e-pedestal", "--tip", "0.4,0.2,1.0")
-    curves = call("rac", "ueda2003")
-    points = call("rac", "ur5e-pedestal", "--modes", "1", "--count", "30")
+    posture = call("postures", "ur5e-pedestal", "--tip", "0.4,0.2,1.0")
+    curves = call("robust-curves", "ueda2003")
+    points = call("robust-points", "ur5e-pedestal", "--modes", "1", "--count", "30")
     layout = call("layout", "ueda2003", "--targets", job, "--turn")
     for shown, words in (
         (posture, ("unasked", "mode 2", "best joints")),
@@ -68,10 +68,10 @@ def test_tables_fit_and_name_what_counts(call: Call, job: Path) -> None:
 @pytest.mark.slow
 def test_files(call: Call, tmp_path: Path, job: Path) -> None:
     for words in (
-        ("posture", "ueda2003", "--tip", "0.33,-0.25"),
-        ("posture", "ur5e-pedestal", "--tip", "0.4,0.2,1.0"),
-        ("rac", "ueda2003"),
-        ("rac", "ur5e-pedestal", "--modes", "1", "--count", "30"),
+        ("postures", "ueda2003", "--tip", "0.33,-0.25"),
+        ("postures", "ur5e-pedestal", "--tip", "0.4,0.2,1.0"),
+        ("robust-curves", "ueda2003"),
+        ("robust-points", "ur5e-pedestal", "--modes", "1", "--count", "30"),
         ("layout", "ueda2003", "--targets", job),
     ):
         picture, document = tmp_path / "p.png", tmp_path / "p.json"
@@ -80,7 +80,7 @@ def test_files(call: Call, tmp_path: Path, job: Path) -> None:
         assert call(*words, "--out", document).status == 0
         assert document.read_text() == call(*words, "--json").out
     table = tmp_path / "t.csv"
-    assert call("rac", "ueda2003", "--out", table).status == 0
+    assert call("robust-curves", "ueda2003", "--out", table).status == 0
     assert table.read_text().startswith("curve,mode,q2,q3,x,y\n")
 
 
@@ -95,10 +95,10 @@ def test_targets_out_of_reach_are_the_answer_no(call: Call, tmp_path: Path) -> N
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("posture", "ueda2003"), "--tip is missing"),
-        (("posture", "ueda2003", "--tip", "3,0"), "--tip: "),
-        (("posture", "ueda2003", "--tip", "0.3,0", "--measure", "turn"), "alignment is its cosine"),
-        (("rac", "ur5e-pedestal", "--modes", "7"), "no mode 7"),
+        (("postures", "ueda2003"), "--tip is missing"),
+        (("postures", "ueda2003", "--tip", "3,0"), "--tip: "),
+        (("postures", "ueda2003", "--tip", "0.3,0", "--measure", "turn"), "alignment is its cosine"),
+        (("robust-points", "ur5e-pedestal", "--modes", "7"), "no mode 7"),
         (("layout", "ueda2003", "--targets", "nowhere.csv"), "nowhere.csv"),
         (("layout", "ueda2003"), "targets"),
     ],

@@ -15,7 +15,7 @@ import flexbase
 from flexbase.cli import main as program
 from flexbase.cli.commands import modes as modes_command
 from flexbase.errors import MissingExtra
-from flexbase.study.paper.table import PaperRow, PaperTable
+from flexbase.study.paper.table import PaperRow, Reproduction
 
 from .conftest import TIP, Call
 
@@ -33,7 +33,7 @@ def test_help_lists_every_command(call: Call, words: tuple[str, ...]) -> None:
     shown = call(*words)
     assert shown.status == 0
     assert all(f"│ {command} " in shown.out for command in COMMANDS)
-    assert {"check", "modes", "design", "simulate", "map", "draw", "reproduce", "robots", "init"} <= set(COMMANDS)
+    assert {"check", "modes", "design", "simulate", "sweep", "draw", "reproduce", "robots", "init"} <= set(COMMANDS)
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -44,40 +44,40 @@ def test_help_has_an_example_and_fits(call: Call, command: str) -> None:
     assert max(map(len, shown.out.splitlines())) <= 80
 
 
+LOOP = (
+    "--stiffness --damping --rate --task-every --task-rate --compute-delay --task-delay --encoder-counts "
+    "--acceleration --accelerometer-lag --acceleration-filter --acceleration-noise --task-noise "
+    "--torque-limit --torque-slew"
+)
 SHOWN = {
     "modes": "--tip --joints --elbow --branch --compensator --out --json",
     "check": "--tip --joints --elbow --branch --json",
     "verdict": "--tip --joints --elbow --branch --compensator --bandwidth --out --json",
     "design": "--tip --joints --elbow --branch --method --natural-frequency --highest-frequency --objective --radius "
-    "--margin --lag --lag-share --derivatives --step --iterations --seed --stiffness --damping --rate --task-every "
-    "--task-rate --compute-delay --task-delay --encoder-counts --acceleration --accelerometer-lag "
-    "--acceleration-filter --acceleration-noise --task-noise --torque-limit --torque-slew --out --json",
-    "hardware": "--tip --joints --elbow --branch --method --methods --stiffness --damping --rate "
-    "--task-every --task-rate --compute-delay --task-delay --encoder-counts --acceleration --accelerometer-lag "
-    "--acceleration-filter --acceleration-noise --task-noise --torque-limit --torque-slew "
-    "--safe-gain --region --half-width --out --json",
-    "hardware-map": "--method --compensator --shape --bounds --hold --elbow --branch --path --stiffness --damping "
-    "--rate --task-every --task-rate --compute-delay --task-delay --encoder-counts --acceleration --accelerometer-lag "
-    "--acceleration-filter --acceleration-noise --task-noise --torque-limit --torque-slew "
+    f"--margin --lag --lag-share --derivatives --step --iterations --seed {LOOP} --out --json",
+    "compare": f"--tip --joints --elbow --branch --method --methods {LOOP} --out --json",
+    "safe-gain": f"--tip --joints --elbow --branch --method --methods {LOOP} --out --json",
+    "region": f"--tip --joints --elbow --branch --method --compensator --half-width {LOOP} --out --json",
+    "hardware-map": f"--method --compensator --shape --bounds --hold --elbow --branch {LOOP} "
     "--axes --resume --scheduler --workers --out --json",
+    "hardware-path": f"--path --method --compensator --elbow --branch {LOOP} --workers --out --json",
     "simulate": "--from --to --elbow --branch --compensator --switch --end --trajectory --compensate --interval "
-    "--self-motion --plant --sampled --method --disturb --free --softest --most --margin --scales --scale --order "
-    "--noise --rate --task-every --task-rate --compute-delay --task-delay "
-    "--encoder-counts --acceleration --accelerometer-lag --acceleration-filter --acceleration-noise --task-noise "
-    "--torque-limit --torque-slew --stiffness --damping --out --json",
-    "ellipsoid": "--tip --joints --elbow --branch --compensator --convention --out --json",
-    "map": "--over --shape --measure --measures --bounds --elbow --branch --hold --axes --vary --sampling --seed "
+    "--self-motion --plant --stiffness --damping --out --json",
+    "simulate-sampled": "--from --to --elbow --branch --compensator --switch --end --trajectory --plant --tolerance "
+    f"--seed --method --disturb --free --softest --most --margin --scales --scale --order --noise {LOOP} --out --json",
+    "manipulability": "--tip --joints --elbow --branch --compensator --convention --out --json",
+    "sweep": "--over --shape --measure --measures --bounds --elbow --branch --hold --axes --vary --sampling --seed "
     "--engine --resume --scheduler --workers --compensator --difference --out --json",
     "montecarlo": "--tip --joints --elbow --branch --over --shape --bounds --axes --hold --vary --criterion --criteria "
     "--samples --seed --sampling --compensator --redesign --engine --scheduler --workers --out --json",
     "draw": "--before --at --out",
-    "posture": "--tip --elbow --branch --measure --compensator --out --json",
-    "rac": "--axes --hold --modes --count --compensator --out --json",
+    "postures": "--tip --elbow --branch --measure --compensator --out --json",
+    "robust-curves": "--axes --hold --compensator --out --json",
+    "robust-points": "--modes --count --compensator --out --json",
     "layout": "--targets --measure --goal --along --turn --within --elbow --branch --compensator --out --json",
-    "recommend": "--tip --joints --elbow --branch --rate --task-every --task-rate --compute-delay --task-delay "
-    "--encoder-counts --acceleration --accelerometer-lag --acceleration-filter --acceleration-noise --task-noise "
-    "--torque-limit --torque-slew --stiffness --damping --out --json",
-    "study": "",
+    "recommend": f"--tip --joints --elbow --branch {LOOP} --out --json",
+    "hardware-study": "--poses --methods --seed --workers --out --json",
+    "agreement": "--poses --trial --methods --seed --workers --out --json",
     "reproduce": "--out --json",
     "robots": "--json",
     "init": "--schema",
@@ -92,10 +92,10 @@ def test_help_shows_every_option(call: Call, command: str) -> None:
 
 def test_help_names_what_the_registries_hold(call: Call) -> None:
     assert all(name in call("design", "--help").out for name in flexbase.METHODS)
-    assert all(name in call("map", "--help").out for name in flexbase.MEASURES)
+    assert all(name in call("sweep", "--help").out for name in flexbase.MEASURES)
 
 
-@pytest.mark.parametrize("command", ["check", "modes", "verdict", "design", "ellipsoid", "robots"])
+@pytest.mark.parametrize("command", ["check", "modes", "verdict", "design", "manipulability", "robots"])
 def test_examples_work(call: Call, command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every example line of the quick commands, in order, in one folder."""
     monkeypatch.chdir(tmp_path)
@@ -138,11 +138,11 @@ def _raise(monkeypatch: pytest.MonkeyPatch, fault: BaseException) -> None:
 def test_reproduce_shows_the_table(call: Call, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     asked = []
 
-    def reproduce(folder: Path, progress: object) -> PaperTable:
+    def reproduce(folder: Path, progress: object) -> Reproduction:
         asked.append(folder)
         progress("drawing", 1, 2)  # type: ignore[operator]
         rows = PaperRow("w_1", -0.07, -0.0708, remark="read off"), PaperRow("omega_1", 300.0, 277.0, 0, "read off")
-        return PaperTable((*rows, PaperRow("lost", None, float("nan"))))
+        return Reproduction((*rows, PaperRow("lost", None, float("nan"))))
 
     stub = ModuleType("flexbase.report.paper.all_figures")
     stub.reproduce = reproduce  # type: ignore[attr-defined]

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 import flexbase as fb
-from flexbase.cli.commands.init import schema_text, template
 from flexbase.model.files.bundled import robots
 from flexbase.model.files.project import parse_project
-from flexbase.study.describe import describe
+from flexbase.model.files.start import schema_text, template
+from flexbase.study.check import check
 
 from .conftest import TIP, Call
 
@@ -62,9 +62,9 @@ def test_check_under_gravity(call: Call, tmp_path: Path) -> None:
 
 
 def test_describe_has_a_summary(paper: fb.Plant, paper_pose: fb.Pose) -> None:
-    assert "1 base and 2 arm joints" in describe(paper).summary()
-    assert re.search(r"condition number of M +19.9682", describe(paper, paper_pose).summary())
-    assert "condition number of M" not in describe(paper).summary()
+    assert "1 base and 2 arm joints" in check(paper).summary()
+    assert re.search(r"condition number of M +19.9682", check(paper, paper_pose).summary())
+    assert "condition number of M" not in check(paper).summary()
 
 
 def test_robots_lists_what_is_bundled(call: Call) -> None:

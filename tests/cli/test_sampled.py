@@ -1,4 +1,4 @@
-"""`simulate --sampled` and `study agreement` on the command line."""
+"""`simulate-sampled` and `agreement` on the command line."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from .conftest import Call
 
 pytest.importorskip("mujoco")
-MOVE = ("simulate", "ueda2003", "--from", "0.33,0.25", "--to", "0.33,-0.25", "--sampled")
+MOVE = ("simulate-sampled", "ueda2003", "--from", "0.33,0.25", "--to", "0.33,-0.25")
 LATE = ("--switch", "0.15", "--end", "0.6")
 
 
@@ -41,15 +41,15 @@ def test_a_compensator_a_push_and_a_picture(call: Call, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "match"),
     [
-        ((*MOVE[:-1], "--rate", "4e3"), "--rate"),
-        ((*MOVE[:-1], "--method", "none"), "--method"),
+        (("simulate", *MOVE[1:], "--rate", "4e3"), "--rate"),
+        (("simulate", *MOVE[1:], "--method", "none"), "--method"),
         ((*MOVE, "--method", "magic"), "magic"),
         ((*MOVE, "--interval", "1e-3"), "--interval"),
         ((*MOVE, "--disturb", "1"), "push"),
         ((*MOVE, "--rate", "0"), "rate"),
-        (("study", "agreement", "ueda2003", "--workers", "-1"), "workers"),
-        (("study", "agreement", "ueda2003", "--methods", "magic"), "magic"),
-        (("study", "nothing"), "nothing"),
+        (("agreement", "ueda2003", "--workers", "-1"), "workers"),
+        (("agreement", "ueda2003", "--methods", "magic"), "magic"),
+        (("study", "hardware", "ueda2003"), "now called hardware-study or agreement"),
     ],
 )
 def test_wrong_words(call: Call, words: tuple[str, ...], match: str) -> None:
@@ -61,7 +61,7 @@ def test_wrong_words(call: Call, words: tuple[str, ...], match: str) -> None:
 
 @pytest.mark.slow
 def test_agreement_in_json_and_in_words(call: Call, tmp_path: Path) -> None:
-    words = ("study", "agreement", "ueda2003", "--poses", "8", "--methods", "none,lqg", "--workers", "1")
+    words = ("agreement", "ueda2003", "--poses", "8", "--methods", "none,lqg", "--workers", "1")
     shown = call(*words, "--json")
     found = json.loads(shown.out)
     assert (shown.status, found["poses"], found["agreement"]) == (0, 8, 1.0)

@@ -14,7 +14,7 @@ import flexbase as fb
 from flexbase.cautions import collected
 from flexbase.sheets.told import Told
 from flexbase.study.agreement.case import Outcome, draw_case
-from flexbase.study.paper.table import PaperRow, PaperTable
+from flexbase.study.paper.table import PaperRow, Reproduction
 from systems.planar import PAPER_TIP
 
 if TYPE_CHECKING:
@@ -130,15 +130,15 @@ EXAMPLES: dict[str, Callable[[], Told]] = {
     "sampled run": lambda: sampled_run("coprime"),
     "sampled run, diverging": lambda: sampled_run("exact"),
     "runs": lambda: runs(0.9, 1.0),
-    "description": lambda: fb.describe(paper()),
-    "description at a pose": lambda: fb.describe(fb.load("ur5e-pedestal"), wide()),
+    "check": lambda: fb.check(paper()),
+    "check at a pose": lambda: fb.check(fb.load("ur5e-pedestal"), wide()),
     "postures": lambda: fb.postures(paper(), PAPER_TIP),
     "layout": lambda: fb.layout(paper(), [PAPER_TIP, (0.2, -0.3), (9.0, 9.0)], along=["x"], within=0.1),
     "robust curves": lambda: fb.robust_curves(paper(), cells=60),
     "robust points": lambda: fb.robust_points(paper(), count=20),
     "robust points, none": lambda: no_points(),
     "robots": fb.robots,
-    "paper": lambda: PaperTable((PaperRow("w_1", -0.07, -0.0708, remark="read off"),)),
+    "paper": lambda: Reproduction((PaperRow("w_1", -0.07, -0.0708, remark="read off"),)),
     "hardware verdict": lambda: fb.hardware_verdict(controller("coprime")),
     "hardware verdict, unstable": lambda: fb.hardware_verdict(controller("exact")),
     "comparison": lambda: fb.compare(pose(), ["none", "exact", "coprime"]),

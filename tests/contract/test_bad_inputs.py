@@ -202,7 +202,7 @@ ON_A_PLANT: dict[str, Callable[[Any], Any]] = {
     "hardware_map": fb.hardware_map,
     "hardware_path": lambda plant: fb.hardware_path(plant, [TIP]),
     "hardware_study": fb.hardware_study,
-    "agreement_study": fb.agreement_study,
+    "agreement": fb.agreement,
 }
 
 
@@ -213,23 +213,31 @@ def test_what_is_no_plant(verb: str) -> None:
 
 
 AT = ["--tip", "0.33,-0.25"]
+PATH = Path(__file__).parent / "tips.csv"
 WITH_A_FILE = {
     "modes": ["modes", "ueda2003", *AT],
     "verdict": ["verdict", "ueda2003", *AT],
-    "ellipsoid": ["ellipsoid", "ueda2003", *AT],
-    "map": ["map", "ueda2003", "--shape", "3,3"],
+    "manipulability": ["manipulability", "ueda2003", *AT],
+    "sweep": ["sweep", "ueda2003", "--shape", "3,3"],
     "montecarlo": ["montecarlo", "ueda2003", *AT, "--vary", "payload=fixed:1"],
-    "posture": ["posture", "ueda2003", *AT],
-    "rac": ["rac", "ueda2003"],
+    "posture": ["postures", "ueda2003", *AT],
+    "robust-curves": ["robust-curves", "ueda2003"],
+    "robust-points": ["robust-points", "ueda2003"],
     "simulate": ["simulate", "ueda2003", "--from", "0.33,0.25", "--to", "0.33,-0.25"],
     "hardware-map": ["hardware-map", "ueda2003", "--shape", "2,2"],
+    "hardware-path": ["hardware-path", "ueda2003", "--path", str(PATH)],
+    "region": ["region", "ueda2003", *AT],
+    "simulate-sampled": ["simulate-sampled", "ueda2003", "--from", "0.33,0.25", "--to", "0.33,-0.25"],
 }
 WITH_A_LOOP = {
-    "hardware": ["hardware", "ueda2003", *AT, "--method", "none"],
+    "compare": ["compare", "ueda2003", *AT, "--method", "none"],
+    "safe-gain": ["safe-gain", "ueda2003", *AT],
+    "region": ["region", "ueda2003", *AT],
+    "hardware-path": ["hardware-path", "ueda2003", "--path", str(PATH)],
     "recommend": ["recommend", "ueda2003", *AT],
     "design": ["design", "ueda2003", *AT],
     "hardware-map": ["hardware-map", "ueda2003", "--shape", "2,2"],
-    "simulate": ["simulate", "ueda2003", "--from", "0.33,0.25", "--to", "0.33,-0.25", "--sampled"],
+    "simulate-sampled": ["simulate-sampled", "ueda2003", "--from", "0.33,0.25", "--to", "0.33,-0.25"],
 }
 OPTIONS = {
     "negative gains": ["--stiffness=-1e5,1e5"],

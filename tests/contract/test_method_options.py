@@ -117,16 +117,15 @@ def test_a_new_method_brings_its_option_to_the_command_line(paper_pose: fb.Pose)
 
 
 def test_a_new_controller_brings_its_option_to_the_command_line() -> None:
-    shown = " ".join(program("simulate", "--help").replace("│", " ").split())
+    shown = " ".join(program("simulate-sampled", "--help").replace("│", " ").split())
     assert "damped: of each joint [N m s/rad], 1" in shown
     move = (
-        "simulate",
+        "simulate-sampled",
         "ueda2003",
         "--from",
         "0.33,-0.24",
         "--to",
         "0.33,-0.25",
-        "--sampled",
         "--switch",
         "0.01",
         "--end",

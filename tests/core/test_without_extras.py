@@ -56,7 +56,7 @@ def tiny(pose, **how):
         ("llvmlite.binding", FAST, lambda pose, path: fb.robust_curves(pose.plant)),
         ("cvxpy", "convex", lambda pose, path: fb.design(pose, "convex", radius=0.2)),
         ("mujoco", "mujoco", lambda pose, path: fb.simulate(pose.plant, pose, pose, move=fb.Move(engine="mujoco"))),
-        ("mujoco", "mujoco", lambda pose, path: fb.agreement_study(pose.plant, poses=1)),
+        ("mujoco", "mujoco", lambda pose, path: fb.agreement(pose.plant, poses=1)),
         ("zarr", MAPS, lambda pose, path: tiny(pose, store=path / "map.zarr")),
         ("plotly.offline", MAPS, lambda pose, path: save_page(tiny(pose), path / "map.html")),
         ("control", "control", lambda pose, path: fb.linearise(pose).to_control()),

@@ -15,7 +15,7 @@ from flexbase.study.agreement import move as agreement_move
 from flexbase.study.agreement import study
 from flexbase.study.agreement.case import Outcome, _driven, draw_case
 from flexbase.study.agreement.nudge import explain, growth_of, watch
-from flexbase.study.agreement.study import Agreement, agreement_study
+from flexbase.study.agreement.study import Agreement, agreement
 
 pytest.importorskip("mujoco")
 
@@ -25,7 +25,7 @@ POSES = 16
 
 @pytest.fixture(scope="module")
 def small(paper):
-    return agreement_study(paper, poses=POSES, methods=QUICK, workers=1)
+    return agreement(paper, poses=POSES, methods=QUICK, workers=1)
 
 
 def test_verdicts_come_true(small):
@@ -74,7 +74,7 @@ def test_a_loop_at_the_border_is_explained_by_its_radius(paper_pose):
 
 def test_the_answer_does_not_depend_on_the_workers(small, paper):
     """Verdicts and outcomes are equal; radii to 1e-6, since LAPACK rounds with where in memory a matrix lies."""
-    again = agreement_study(paper, poses=POSES, methods=QUICK, workers=2)
+    again = agreement(paper, poses=POSES, methods=QUICK, workers=2)
     for one, other in zip(small.to_dict()["cases"], again.to_dict()["cases"], strict=True):
         assert one["spectral_radius"] == pytest.approx(other["spectral_radius"], rel=1e-6)
         same = ("number", "method", "rate_hz", "gain_scale", "change", "drive", "settled", "predicted_stable")
@@ -107,7 +107,7 @@ def test_classes_are_balanced_by_drawing_again(paper, monkeypatch):
     """The commoner class stops at its share; a mix of one class alone is refused and says so."""
     monkeypatch.setattr(study, "ATTEMPTS", 2)
     with pytest.raises(InputError, match="do not balance"):
-        agreement_study(paper, poses=12, methods=["exact"], workers=1)
+        agreement(paper, poses=12, methods=["exact"], workers=1)
 
 
 def test_draws_are_by_number_alone(paper_pose):
@@ -118,17 +118,17 @@ def test_draws_are_by_number_alone(paper_pose):
 
 def test_wrong_words_are_named(paper):
     with pytest.raises(InputError, match="method"):
-        agreement_study(paper, poses=4, methods=["magic"])
+        agreement(paper, poses=4, methods=["magic"])
     with pytest.raises(InputError, match="workers"):
-        agreement_study(paper, poses=4, workers=-1)
+        agreement(paper, poses=4, workers=-1)
     with pytest.raises(InputError, match="poses"):
-        agreement_study(paper, poses=0)
-    assert fb.agreement_study is agreement_study
+        agreement(paper, poses=0)
+    assert fb.agreement is agreement
 
 
 @pytest.fixture(scope="module")
 def moved(paper):
-    return agreement_study(paper, poses=10, trial="move", methods=QUICK, workers=1)
+    return agreement(paper, poses=10, trial="move", methods=QUICK, workers=1)
 
 
 @pytest.mark.slow
@@ -137,7 +137,7 @@ def test_moves_are_the_same_controllers_with_noise_and_limits(moved, paper):
 
     The limits are so tight that a few stable loops do not come to rest.
     """
-    nudged = agreement_study(paper, poses=10, methods=QUICK, workers=1)
+    nudged = agreement(paper, poses=10, methods=QUICK, workers=1)
     for one, other in zip(moved.cases, nudged.cases, strict=True):
         assert one.radius == pytest.approx(other.radius, rel=1e-6)
         assert one.controller.sensing.encoder_counts is not None

@@ -178,7 +178,7 @@ def test_ellipse_tips_hold_the_design_point_and_only_what_is_reached(case):
 
 
 @pytest.fixture(scope="module")
-def table(case, shaped, settled) -> paper.PaperTable:
+def table(case, shaped, settled) -> paper.Reproduction:
     return paper.compare(case, shaped, settled, paper.ellipse_field(case.plant, spacing=0.25))
 
 

@@ -35,7 +35,7 @@ def test_local_cluster_writes_the_same_store(whole: Path, tmp_path: Path) -> Non
     """By the command line, in a process of its own, as a user would."""
     path = tmp_path / "map.zarr"
     shape = ",".join(map(str, SHAPE))
-    words = ["map", "ueda2003", "--shape", shape, "--out", str(path), "--workers", "2"]
+    words = ["sweep", "ueda2003", "--shape", shape, "--out", str(path), "--workers", "2"]
     done = subprocess.run([sys.executable, "-m", "flexbase", *words], capture_output=True, timeout=240)
     assert (done.returncode, done.stderr) == (0, b"")
     assert bits(path) == bits(whole)

@@ -92,7 +92,7 @@ def test_killed_at_random_and_resumed(whole: Path, tmp_path: Path) -> None:
     """SIGKILL three times, wherever it hits; then the same command finishes, and once more does nothing."""
     path = tmp_path / "map.zarr"
     shape = ",".join(map(str, SHAPE))
-    command = [sys.executable, "-m", "flexbase", "map", "ueda2003", "--shape", shape, "--out", str(path), "--resume"]
+    command = [sys.executable, "-m", "flexbase", "sweep", "ueda2003", "--shape", shape, "--out", str(path), "--resume"]
     rng = np.random.default_rng(0)
     started = time.monotonic()
     run = subprocess.run([*command[:5], "--shape", "9,9"], check=True, capture_output=True, timeout=120)

@@ -8,7 +8,7 @@ from flexbase.cli.options.common import Json
 from flexbase.cli.options.pose import PoseOptions, Robot
 from flexbase.cli.terminal.show import show
 from flexbase.plant import load
-from flexbase.study.describe import describe
+from flexbase.study.check import check as check_of
 
 app = App(
     name="check",
@@ -26,4 +26,4 @@ Exit status: 0 sound, 2 not.""",
 def check(robot: Robot, /, *, pose: PoseOptions = PoseOptions(), json: Json = False) -> None:  # noqa: B008
     """Load a project and show what it says; with --tip or --joints also what holds there."""
     plant = load(robot)
-    show("check", describe(plant, pose.pose_or_none(plant)), json)
+    show("check", check_of(plant, pose.pose_or_none(plant)), json)

@@ -30,7 +30,7 @@ app = App(
   flexbase design ueda2003 --tip 0.33,-0.25 --objective least-radius -o E.json
   flexbase design ueda2003 --tip 0.33,-0.25 --method recursive --seed 1
 
-The file works with modes, simulate, ellipsoid and map: --compensator E.json
+The file works with modes, simulate, manipulability and sweep: --compensator E.json
 Exit status: 0 designed, 1 none exists (the reason is said), 2 wrong input.""",
 )
 Out = Annotated[OutFile, Parameter(help="write the compensator as JSON")]
@@ -65,5 +65,5 @@ def design(
         found.save(out)
     real = as_it_runs(at, Loop(found, gains, sensing))
     sheet = together(found.sheet(), *([] if real is None else [real.sheet()]))
-    say("design", {**found.to_dict(), "hardware": real}, sheet, json, out)
+    say("design", {**found.to_dict(), "as_it_runs": real}, sheet, json, out)
     return 0

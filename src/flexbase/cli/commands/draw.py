@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from cyclopts import App, Parameter
 
 from flexbase.cli.options.common import option
 from flexbase.cli.options.values import names, number
-from flexbase.cli.terminal.out import PICTURES, OutFile, check_out, write_out, written
+from flexbase.cli.terminal.out import PICTURES, OutFile, check_out, written
 from flexbase.cli.terminal.screen import put
-from flexbase.errors import InputError, nearest_name
+from flexbase.errors import InputError
 from flexbase.sheets.sheet import Sheet
 from flexbase.study.montecarlo import is_study
-from flexbase.sweeps import difference, open_dataset
-from flexbase.sweeps.answers.chart import chart_of, thinned
-
-if TYPE_CHECKING:
-    import xarray
+from flexbase.sweeps.answers.chart import chart_of
 
 app = App(
     name="draw",
@@ -41,7 +37,7 @@ def _values(text: str, given: str) -> Values:
 
 @app.default
 def draw(
-    sweep: Annotated[Path, Parameter(help="a .zarr store that map wrote, or a .nc file")],
+    sweep: Annotated[Path, Parameter(help="a .zarr store that sweep wrote, or a .nc file")],
     /,
     *,
     before: Annotated[
@@ -54,22 +50,11 @@ def draw(
     if out is None:
         raise InputError("--out is missing. Say where the picture goes, such as --out map.png.")
     check_out(out, (*PICTURES, ".html"))
-    found = _chosen(open_dataset(sweep), at)
-    if before is not None:
-        found = difference(*(thinned(one) for one in (_chosen(open_dataset(before), at), found)))
-    write_out(out, "draw", found, {})
+    from flexbase.report.draw import draw as draw_file
+
+    found = draw_file(sweep, out, before=before, at=dict(at))
     if is_study(found):
         return put(Sheet(found.attrs["robot"], f"{found.attrs['design']}, probability that it holds"), *written(out))
     chart = chart_of(found)
     axes = ", ".join(axis.name for axis in chart.drawn or chart.axes)
     put(Sheet(chart.heading, f"{', '.join(layer.title for layer in chart.layers)} over {axes}"), *written(out))
-
-
-def _chosen(dataset: xarray.Dataset, at: Values) -> xarray.Dataset:
-    """The cells nearest to the values given. Raises InputError."""
-    for name, value in at:
-        dims = dataset["status"].dims
-        if name not in dims:
-            raise InputError(f'--at: no axis "{name}". {nearest_name(name, map(str, dims))}')
-        dataset = dataset.sel({name: value}, method="nearest")
-    return dataset

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json as json_format
-from importlib import resources
 from pathlib import Path
 from typing import Annotated
 
@@ -12,7 +10,8 @@ from cyclopts import App, Parameter
 from flexbase.cli.terminal.out import write_text
 from flexbase.cli.terminal.screen import put
 from flexbase.errors import InputError
-from flexbase.model.files.schema import ProjectFile
+from flexbase.model.files.start import init as init_at
+from flexbase.model.files.start import schema_text
 
 app = App(
     name="init",
@@ -44,17 +43,5 @@ def init(
         write_text(schema, schema_text())
         put(f"Written: {schema}")
     if file is not None or schema is None:
-        project = file or DEFAULT
-        write_text(project, template(), mode="x")
+        project = init_at(file or DEFAULT)
         put(f"Written: {project}", f"Next: flexbase check {project}")
-
-
-def template() -> str:
-    """The commented project file."""
-    return (resources.files("flexbase.model.files") / "template.toml").read_text("utf-8")
-
-
-def schema_text() -> str:
-    """The JSON schema of project files, as docs/flexbase.schema.json holds it."""
-    whole = {"$schema": "https://json-schema.org/draft/2020-12/schema", **ProjectFile.model_json_schema()}
-    return json_format.dumps(whole, indent=2) + "\n"

@@ -10,14 +10,11 @@ from flexbase.cli.options.common import CompensatorFile, Json, option
 from flexbase.cli.options.gains import GainOptions
 from flexbase.cli.options.move import MoveOptions
 from flexbase.cli.options.pose import Elbow, Robot, compensator_of, tip_pose
-from flexbase.cli.options.sampled import SampledOptions
-from flexbase.cli.options.sensing import SensingOptions
 from flexbase.cli.options.values import Vector, numbers
 from flexbase.cli.terminal.out import Out, check_out
 from flexbase.cli.terminal.show import show
 from flexbase.model.loop import Loop
 from flexbase.plant import load
-from flexbase.simulation import Run, SampledRun
 from flexbase.simulation import simulate as run_of
 
 app = App(
@@ -26,8 +23,6 @@ app = App(
   flexbase simulate ueda2003 --from 0.33,0.25 --to 0.33,-0.25
   flexbase simulate ueda2003 --from 0.33,0.25 --to 0.33,-0.25 \\
       --compensator E.json --out run.png
-  flexbase simulate ueda2003 --from 0.33,0.25 --to 0.33,-0.25 \\
-      --sampled --method coprime --plant mujoco --disturb 50,0 --end 0.8
 
 Settled: the tip comes below 0.1 mm after the switch and stays there.
 Exit status: 0 settled, 1 did not settle, 2 wrong input.""",
@@ -46,8 +41,6 @@ def simulate(
     compensator: CompensatorFile = None,
     move: MoveOptions = MoveOptions(),  # noqa: B008
     gains: GainOptions = GainOptions(),  # noqa: B008
-    sampled: SampledOptions = SampledOptions(),  # noqa: B008
-    senses: SensingOptions = SensingOptions(),  # noqa: B008
     out: Out = None,
     json: Json = False,
 ) -> int:
@@ -57,11 +50,6 @@ def simulate(
     law = compensator_of(plant, compensator)
     there = tip_pose(plant, "--to", goal, elbow, near=law)
     here = tip_pose(plant, "--from", start, elbow, near=there)
-    found: Run | SampledRun
-    asked = Loop(law, gains.gains(plant))
-    if sampled.asked(senses):
-        found = sampled.run(here, there, senses, asked, move)
-    else:
-        found = run_of(plant, here, there, asked, move=move)
+    found = run_of(plant, here, there, Loop(law, gains.gains(plant)), move=move)
     show("simulate", found, json, out)
     return 0 if found.settled else 1

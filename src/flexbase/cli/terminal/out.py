@@ -53,11 +53,7 @@ def written(path: Path | None) -> list[str]:
     return [] if path is None else ["", f"  Written: {path}"]
 
 
-def write_text(path: Path, text: str, mode: str = "w") -> None:
-    """Write a text file. Raises InputError; mode "x" refuses to overwrite."""
-    with writing(path):
-        try:
-            with path.open(mode, encoding="utf-8", newline="\n") as file:
-                file.write(text)
-        except FileExistsError as fault:
-            raise InputError(f"{path}: already exists and is not overwritten. Give another name.") from fault
+def write_text(path: Path, text: str) -> None:
+    """Write a text file. Raises InputError."""
+    with writing(path), path.open("w", encoding="utf-8", newline="\n") as file:
+        file.write(text)

@@ -12,6 +12,7 @@ from cyclopts import (
     UnusedCliTokensError,
 )
 
+from flexbase.cli.catalogue import RENAMED
 from flexbase.errors import nearest_name
 
 
@@ -24,6 +25,8 @@ def command_line_fault(fault: CycloptsError, commands: Sequence[str]) -> str:
     match fault:
         case UnknownCommandError() if word.startswith("-"):
             return f'unknown option "{word}". Options come after a command: {", ".join(commands)}.'
+        case UnknownCommandError() if word in RENAMED:
+            return f'"{word}" is now called {RENAMED[word]}.'
         case UnknownCommandError():
             return f'unknown command "{word}". {nearest_name(word, commands)}'
         case MissingArgumentError() if fault.keyword:

@@ -13,7 +13,7 @@ from flexbase.report.paper import numbers_behind as numbers
 from flexbase.report.save import make_folder, save_csv, save_figure, save_text
 from flexbase.requests import Progress, no_progress
 from flexbase.study.paper import (
-    PaperTable,
+    Reproduction,
     compare,
     ellipse_field,
     ellipse_tips,
@@ -23,7 +23,7 @@ from flexbase.study.paper import (
     shaping,
 )
 
-__all__ = ["PANELS", "PaperTable", "reproduce"]
+__all__ = ["PANELS", "Reproduction", "reproduce"]
 
 PANELS = (
     "fig05", "fig06a", "fig06b", "fig07a", "fig07b", "fig07c", "fig08a", "fig08b", "fig09a", "fig09b", "fig10",
@@ -31,7 +31,7 @@ PANELS = (
 HEADER = ("quantity", "paper", "ours", "difference", "remark")
 
 
-def reproduce(folder: Path, progress: Progress = no_progress) -> PaperTable:
+def reproduce(folder: Path, progress: Progress = no_progress) -> Reproduction:
     """Compute everything, then write `fig*.png`, `fig*.svg`, `fig*.csv`, `table.md` and `table.csv` into a folder.
 
     progress : called with what is being done, the steps done and all steps
@@ -87,7 +87,7 @@ class _Steps:
         self.progress(doing, self.done, self.total)
 
 
-def _markdown(table: PaperTable) -> str:
+def _markdown(table: Reproduction) -> str:
     lines = ["| " + " | ".join(HEADER) + " |", "|" + "---|" * len(HEADER)]
     lines += ["| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in table.summary_rows()]
     return "\n".join(lines) + "\n"

@@ -195,7 +195,7 @@ class Agreement(Told):
 CLASSES = ("stable", "unstable")
 
 
-def agreement_study(
+def agreement(
     plant: Plant,
     *,
     poses: int = 500,

@@ -4,7 +4,7 @@ from flexbase.study.paper.ellipses import EllipseCell, EllipseField, ellipse_cel
 from flexbase.study.paper.example import DESIGN_TIP, START_TIP, TARGET_FREQUENCY, Example, example
 from flexbase.study.paper.paper_and_ours import compare
 from flexbase.study.paper.robustness_map import RobustnessMap, robustness_map
-from flexbase.study.paper.table import PaperRow, PaperTable
+from flexbase.study.paper.table import PaperRow, Reproduction
 from flexbase.study.paper.two_designs import Shaping, shaping
 from flexbase.study.paper.two_moves import Settling, settling
 
@@ -16,7 +16,7 @@ __all__ = [
     "EllipseField",
     "Example",
     "PaperRow",
-    "PaperTable",
+    "Reproduction",
     "RobustnessMap",
     "Settling",
     "Shaping",

@@ -12,7 +12,7 @@ from flexbase.simulation import Run
 from flexbase.study.paper import ellipses, printed
 from flexbase.study.paper.ellipses import EllipseCell, EllipseField
 from flexbase.study.paper.example import TARGET_FREQUENCY, Example
-from flexbase.study.paper.table import PaperRow, PaperTable
+from flexbase.study.paper.table import PaperRow, Reproduction
 from flexbase.study.paper.two_designs import Shaping
 from flexbase.study.paper.two_moves import Settling
 
@@ -22,7 +22,7 @@ RANGES = ((-0.01, 0.0), (-0.1, -0.05), (-np.inf, -0.1))  # of w_1: near the robu
 PATH = "The path and the tracking law of the move are not given; ours is a quintic in joint space."
 
 
-def compare(case: Example, shaped: Shaping, settled: Settling, field: EllipseField) -> PaperTable:
+def compare(case: Example, shaped: Shaping, settled: Settling, field: EllipseField) -> Reproduction:
     """The whole table, in the paper's order."""
     rows = [
         *_parameters(case.plant),
@@ -34,7 +34,7 @@ def compare(case: Example, shaped: Shaping, settled: Settling, field: EllipseFie
         *_settling(case, shaped, settled),
         *_ellipses(field),
     ]
-    return PaperTable(tuple(rows))
+    return Reproduction(tuple(rows))
 
 
 def _parameters(plant: Plant) -> list[PaperRow]:

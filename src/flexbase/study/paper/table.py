@@ -50,7 +50,7 @@ class PaperRow(Plain):
 
 
 @dataclass(frozen=True)
-class PaperTable(Told):
+class Reproduction(Told):
     """The paper's numbers beside ours."""
 
     rows: tuple[PaperRow, ...]

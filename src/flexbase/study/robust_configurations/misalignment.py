@@ -83,9 +83,9 @@ def make_misalignment(plant: Plant, loop: Asked) -> Misalignment:
     if arm.k == 1:
         raise InputError(
             f"robust configurations: {plant.name} has one task row; its modes are positive real where robustness is "
-            "positive, not on a line. Draw flexbase map."
+            "positive, not on a line. Draw flexbase sweep."
         )
-    check_measures(plant, (MEASURES["alignment"],), "rac")
+    check_measures(plant, (MEASURES["alignment"],), "robust configurations")
     return Misalignment(arm, loop_on(arm, loop).E)
 
 

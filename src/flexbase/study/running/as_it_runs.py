@@ -39,7 +39,7 @@ class AsItRuns(Told):
 
     def sheet(self) -> Sheet:
         """Whether it runs, in which loop, and what to do where it does not."""
-        mend = None if self.good else Note("flexbase hardware compares what is made for this loop.")
+        mend = None if self.good else Note("flexbase compare compares what is made for this loop.")
         return make_sheet("As it runs", self.verdict.method, self.verdict.answer(), facts(("loop", self.loop)), mend)
 
 

@@ -13,6 +13,7 @@ from flexbase.model.loop import Asked, loop_on
 from flexbase.model.sensing import Sensing
 from flexbase.model.task import Gains
 from flexbase.plant import Pose, check_pose
+from flexbase.requests import Progress, no_progress
 from flexbase.sampled.columns import below, cells, columns, legend
 from flexbase.sampled.figures import FIGURES
 from flexbase.sampled.judged import GOOD_MARGIN
@@ -73,7 +74,9 @@ class Comparison(Told):
         )
 
 
-def compare(pose: Pose, methods: Sequence[str] | None = None, loop: Asked = None) -> Comparison:
+def compare(
+    pose: Pose, methods: Sequence[str] | None = None, loop: Asked = None, progress: Progress = no_progress
+) -> Comparison:
     """Every method's controller at a pose, judged. All registered methods if none are named.
 
     Raises InputError for an unknown method, and where gains are missing.
@@ -83,8 +86,11 @@ def compare(pose: Pose, methods: Sequence[str] | None = None, loop: Asked = None
         choose("method", name, HARDWARE_METHODS)
     check_pose(pose)
     meant = loop_on(pose.arm, loop)
-    contenders = tuple(_contender(pose, name, meant.sensing, meant.gains) for name in names)
-    return Comparison(pose.plant.name, meant.sensing, contenders)
+    contenders = []
+    for done, name in enumerate(names):
+        progress(name, done, len(names))
+        contenders.append(_contender(pose, name, meant.sensing, meant.gains))
+    return Comparison(pose.plant.name, meant.sensing, tuple(contenders))
 
 
 def _contender(pose: Pose, name: str, sensing: Sensing, gains: Gains) -> Contender:

@@ -35,7 +35,7 @@ def open_dataset(path: str | Path) -> xarray.Dataset:
         _ = found["status"].attrs["flag_meanings"], found.attrs["robot"]  # KeyError where there are none
     except (OSError, ValueError, KeyError, TypeError) as fault:
         raise InputError(
-            f"{path}: is no sweep of flexbase's. Give a .zarr folder or a .nc file that flexbase map wrote."
+            f"{path}: is no sweep of flexbase's. Give a .zarr folder or a .nc file that flexbase sweep wrote."
         ) from fault
     return found
 

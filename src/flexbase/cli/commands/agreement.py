@@ -1,4 +1,4 @@
-"""`flexbase study agreement`: linear verdicts against their outcome in MuJoCo."""
+"""`flexbase agreement`: linear verdicts against their outcome in MuJoCo."""
 
 from __future__ import annotations
 
@@ -13,14 +13,15 @@ from flexbase.cli.terminal.out import OutFile, check_out
 from flexbase.cli.terminal.progress import progress_bar
 from flexbase.cli.terminal.show import show
 from flexbase.plant import load
-from flexbase.study.agreement.study import TRIALS, agreement_study
+from flexbase.study.agreement.study import TRIALS
+from flexbase.study.agreement.study import agreement as agreement_of
 
 app = App(
     name="agreement",
     help_epilogue="""Examples:
-  flexbase study agreement ueda2003 --poses 500 --json
-  flexbase study agreement ueda2003 --poses 500 --trial move
-  flexbase study agreement ueda2003 --poses 60 --methods none,coprime
+  flexbase agreement ueda2003 --poses 500 --json
+  flexbase agreement ueda2003 --poses 500 --trial move
+  flexbase agreement ueda2003 --poses 60 --methods none,coprime
 
 Random controllers on random robots: each is nudged in MuJoCo and watched until
 the motion has grown or died out. With --trial move it drives there from
@@ -33,7 +34,7 @@ Out = Annotated[OutFile, Parameter(help="write all cases as .json")]
 
 
 @app.default
-def study_agreement(
+def agreement(
     robot: Robot,
     /,
     *,
@@ -49,8 +50,8 @@ def study_agreement(
     check_out(out, (".json",))
     plant = load(robot)
     with progress_bar(plain_lines=True) as report:
-        found = agreement_study(
+        found = agreement_of(
             plant, poses=poses, seed=seed, trial=trial, methods=methods or None, workers=workers, progress=report
         )
-    show("study agreement", found, json, out)
+    show("agreement", found, json, out)
     return 0 if found.good else 1

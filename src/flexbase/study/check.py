@@ -16,8 +16,8 @@ from flexbase.sheets.told import Told
 
 
 @dataclass(frozen=True, eq=False)
-class Description(Told):
-    """A plant in words and numbers, and one pose of it where one was asked for. Made by `describe`."""
+class Check(Told):
+    """A plant in words and numbers, and one pose of it where one was asked for. Made by `check`."""
 
     plant: Plant
     pose: Pose | None = None
@@ -114,6 +114,6 @@ class Description(Told):
         return table(heads, ([*row, q, torques.get(row[0], "")] for row, q in both))
 
 
-def describe(plant: Plant, pose: Pose | None = None) -> Description:
+def check(plant: Plant, pose: Pose | None = None) -> Check:
     """What a project says, and at a pose: tip, condition of M, sag of the base, torque that holds against gravity."""
-    return Description(plant, pose)
+    return Check(plant, pose)

@@ -1,4 +1,4 @@
-"""`flexbase study hardware`: which controllers run, over the workspace, at several rates and gains."""
+"""`flexbase hardware-study`: which controllers run, over the workspace, at several rates and gains."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from flexbase.cli.terminal.out import OutFile, check_out
 from flexbase.cli.terminal.progress import progress_bar
 from flexbase.cli.terminal.show import show
 from flexbase.plant import load
-from flexbase.study.running.hardware_study import hardware_study
+from flexbase.study.running.hardware_study import hardware_study as hardware_study_of
 from flexbase.synthesis import HARDWARE_METHODS
 
 app = App(
-    name="hardware",
+    name="hardware-study",
     help_epilogue=f"""Examples:
-  flexbase study hardware ueda2003 --poses 400 --json
-  flexbase study hardware ur5e-pedestal --poses 100 --methods none,coprime
+  flexbase hardware-study ueda2003 --poses 400 --json
+  flexbase hardware-study ur5e-pedestal --poses 100 --methods none,coprime
 
 Methods: {", ".join(HARDWARE_METHODS)}.
 Gain scale s stands for the project's gains as (s Kp, sqrt(s) Kv).""",
@@ -29,7 +29,7 @@ Out = Annotated[OutFile, Parameter(help="write the table as .json")]
 
 
 @app.default
-def study_hardware(
+def hardware_study(
     robot: Robot,
     /,
     *,
@@ -44,7 +44,7 @@ def study_hardware(
     check_out(out, (".json",))
     plant = load(robot)
     with progress_bar(plain_lines=True) as report:
-        found = hardware_study(
+        found = hardware_study_of(
             plant,
             poses=poses,
             seed=seed,
@@ -52,4 +52,4 @@ def study_hardware(
             workers=workers,
             progress=report,
         )
-    show("study hardware", found, json, out)
+    show("hardware-study", found, json, out)

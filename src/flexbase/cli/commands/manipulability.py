@@ -1,4 +1,4 @@
-"""`flexbase ellipsoid`: dynamic manipulability in both conventions."""
+"""`flexbase manipulability`: dynamic manipulability in both conventions."""
 
 from __future__ import annotations
 
@@ -11,16 +11,17 @@ from flexbase.cli.options.common import CompensatorFile, Json
 from flexbase.cli.options.pose import PoseOptions, Robot, compensator_of
 from flexbase.cli.terminal.out import Out, check_out, write_out
 from flexbase.cli.terminal.show import say
-from flexbase.measures.manipulability import CONVENTIONS, manipulability
+from flexbase.measures.manipulability import CONVENTIONS
+from flexbase.measures.manipulability import manipulability as manipulability_of
 from flexbase.plant import load
 from flexbase.sheets.sheet import together
 
 app = App(
-    name="ellipsoid",
+    name="manipulability",
     help_epilogue="""Examples:
-  flexbase ellipsoid ueda2003 --tip 0.33,-0.25
-  flexbase ellipsoid ueda2003 --tip 0.33,-0.25 --compensator E.json
-  flexbase ellipsoid ueda2003 --tip 0.33,-0.25 --convention torque -o e.svg
+  flexbase manipulability ueda2003 --tip 0.33,-0.25
+  flexbase manipulability ueda2003 --tip 0.33,-0.25 --compensator E.json
+  flexbase manipulability ueda2003 --tip 0.33,-0.25 --convention torque -o e.svg
 
 force: tip accelerations for |f| <= 1 (the paper's); torque: for |tau| <= 1.
 A picture shows the convention asked for, or force.""",
@@ -28,7 +29,7 @@ A picture shows the convention asked for, or force.""",
 
 
 @app.default
-def ellipsoid(
+def manipulability(
     robot: Robot,
     /,
     *,
@@ -45,8 +46,8 @@ def ellipsoid(
     shown = CONVENTIONS if convention is None else (choose("--convention", convention, {n: n for n in CONVENTIONS}),)
     plant = load(robot)
     there, used = pose.pose(plant), compensator_of(plant, compensator)
-    found = {name: manipulability(there, used, name) for name in CONVENTIONS}
+    found = {name: manipulability_of(there, used, name) for name in CONVENTIONS}
     content = {"q": there.q, "tip": there.tip, **found}
     sheet = together(*(found[name].sheet() for name in shown))
-    write_out(out, "ellipsoid", found[shown[0]], content)
-    say("ellipsoid", content, sheet, json, out)
+    write_out(out, "manipulability", found[shown[0]], content)
+    say("manipulability", content, sheet, json, out)

@@ -13,7 +13,7 @@ from flexbase.sweeps import document
 
 from .conftest import Call
 
-SMALL = ("map", "ueda2003", "--shape", "9,7")
+SMALL = ("sweep", "ueda2003", "--shape", "9,7")
 
 
 def test_document_is_the_librarys(call: Call, paper: fb.Plant) -> None:
@@ -23,13 +23,13 @@ def test_document_is_the_librarys(call: Call, paper: fb.Plant) -> None:
         paper, ["robustness", "alignment"], fb.Cells(shape=(9, 7), bounds=[-0.4, 0.8, -0.6, 0.6], branch="-")
     )
     assert outcome.err == ""  # stderr is no terminal: no bar
-    assert outcome.document("map") == document(chart)
+    assert outcome.document("sweep") == document(chart)
 
 
 @pytest.mark.parametrize("option", ["--measure", "--measures"])
 def test_over_joints(call: Call, option: str) -> None:
     words = ("--over", "joints", "--axes", "q3,q2", option, "compensability", "--json")
-    found = call(*SMALL, *words).document("map")
+    found = call(*SMALL, *words).document("sweep")
     assert [axis["name"] for axis in found["axes"]] == ["q3", "q2"]
     assert list(found["measures"]) == ["compensability"]
 
@@ -46,7 +46,7 @@ def test_csv_json_and_picture(call: Call, tmp_path: Path) -> None:
 
 def test_compensator_is_used(call: Call, compensator_file: Path) -> None:
     here = ("--bounds", "0.33,0.34,-0.25,-0.24", "--shape", "2,2", "--compensator", compensator_file, "--json")
-    found = call("map", "ueda2003", *here).document("map")
+    found = call("sweep", "ueda2003", *here).document("sweep")
     assert found["compensated"] is True
     assert np.abs(found["measures"]["robustness"]["values"][0][0][0]) < 1e-12
 

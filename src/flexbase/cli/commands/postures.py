@@ -1,4 +1,4 @@
-"""`flexbase posture`: the joints in which the arm stands best on a target."""
+"""`flexbase postures`: the joints in which the arm stands best on a target."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from flexbase.cli.terminal.out import Out, check_out
 from flexbase.cli.terminal.show import show
 from flexbase.errors import InputError
 from flexbase.plant import load
-from flexbase.study.postures.best_postures import postures
+from flexbase.study.postures.best_postures import postures as postures_of
 from flexbase.study.postures.objective import climbable
 
 app = App(
-    name="posture",
+    name="postures",
     help_epilogue=f"""Examples:
-  flexbase posture ueda2003 --tip 0.33,-0.25
-  flexbase posture ur5e-pedestal --tip 0.4,0.2,1.0 --out posture.png
-  flexbase posture iiwa-platform --tip 0.5,0.2,1.0 --measure alignment
+  flexbase postures ueda2003 --tip 0.33,-0.25
+  flexbase postures ur5e-pedestal --tip 0.4,0.2,1.0 --out posture.png
+  flexbase postures iiwa-platform --tip 0.5,0.2,1.0 --measure alignment
 
 Of measures with a value for each mode the worst counts. Joint limits are not
 looked at. Measures: {", ".join(climbable())}.""",
@@ -30,7 +30,7 @@ looked at. Measures: {", ".join(climbable())}.""",
 
 
 @app.default
-def posture(
+def postures(
     robot: Robot,
     /,
     *,
@@ -48,5 +48,5 @@ def posture(
     plant = load(robot)
     used = compensator_of(plant, compensator)
     with blaming("--tip"):
-        found = postures(plant, tip, measure, branch=elbow, loop=used)
-    show("posture", found, json, out)
+        found = postures_of(plant, tip, measure, branch=elbow, loop=used)
+    show("postures", found, json, out)

@@ -1,4 +1,4 @@
-"""`flexbase map`: measures over many configurations."""
+"""`flexbase sweep`: measures over many configurations."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from flexbase.measures import MEASURES
 from flexbase.plant import load
 
 app = App(
-    name="map",
+    name="sweep",
     help_epilogue=f"""Examples:
-  flexbase map ueda2003 --out robustness.png
-  flexbase map ueda2003 --measures robustness,alignment --over joints
-  flexbase map ueda2003 --shape 10000,10000 --out big.zarr --resume
-  flexbase map ueda2003 --compensator E.json --difference --out change.html
-  flexbase map ur5e-pedestal --hold 0.4 --vary payload=0:5:6 -o map.nc
+  flexbase sweep ueda2003 --out robustness.png
+  flexbase sweep ueda2003 --measures robustness,alignment --over joints
+  flexbase sweep ueda2003 --shape 10000,10000 --out big.zarr --resume
+  flexbase sweep ueda2003 --compensator E.json --difference --out change.html
+  flexbase sweep ur5e-pedestal --hold 0.4 --vary payload=0:5:6 -o map.nc
 
 Measures: {", ".join(MEASURES)}.""",
 )
@@ -32,7 +32,7 @@ Out = Annotated[OutFile, Parameter(help="write a picture (.png .svg .pdf .html),
 
 
 @app.default
-def map_cells(
+def sweep(
     robot: Robot,
     /,
     *,
@@ -54,4 +54,4 @@ def map_cells(
     how = replace(execution, store=store_of(out))
     ask = compared if difference else swept
     found = ask(plant, measures, cells, how, used)
-    show_map("map", found, json, out)
+    show_map("sweep", found, json, out)

@@ -1,0 +1,53 @@
+"""`flexbase hardware-path`: verdicts on the loop as it runs, along a path of tips."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import App, Parameter
+
+from flexbase.cli.options.common import CompensatorFile, Json
+from flexbase.cli.options.elbow import AnyElbow
+from flexbase.cli.options.gains import GainOptions
+from flexbase.cli.options.pose import Robot, compensator_of
+from flexbase.cli.options.sensing import SensingOptions
+from flexbase.cli.options.tips import tips_of
+from flexbase.cli.terminal.out import OutFile, check_out
+from flexbase.cli.terminal.progress import progress_bar
+from flexbase.cli.terminal.show import show
+from flexbase.model.loop import Loop
+from flexbase.plant import load
+from flexbase.study.running.hardware_path import hardware_path as path_of
+
+app = App(
+    name="hardware-path",
+    help_epilogue="""Examples:
+  flexbase hardware-path ueda2003 --path tips.csv --method coprime
+  flexbase hardware-path ueda2003 --path tips.csv --compensator E.json""",
+)
+Out = Annotated[OutFile, Parameter(help="write the verdicts as .json")]
+
+
+@app.default
+def hardware_path(
+    robot: Robot,
+    /,
+    *,
+    path: Annotated[Path, Parameter(metavar="FILE", help="tips, one a line (.csv) [m, rad]")],
+    method: Annotated[str, Parameter(metavar="NAME", help="designed anew at every tip; none if left out")] = "none",
+    compensator: CompensatorFile = None,
+    elbow: AnyElbow = None,
+    loop: GainOptions = GainOptions(),  # noqa: B008
+    run: SensingOptions = SensingOptions(),  # noqa: B008
+    workers: Annotated[int | None, Parameter(metavar="N", help="processes; one a core if left out")] = None,
+    out: Out = None,
+    json: Json = False,
+) -> None:
+    """Stability, margins, changed robots and stiffness, each tip with a controller of its own."""
+    check_out(out, (".json",))
+    plant, tips = load(robot), tips_of(path)
+    meant = Loop(compensator_of(plant, compensator), loop.gains(plant), run.sensing(plant))
+    with progress_bar() as progress:
+        found = path_of(plant, tips, method, loop=meant, branch=elbow, workers=workers, progress=progress)
+    show("hardware-path", found, json, out)
