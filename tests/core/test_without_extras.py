@@ -15,14 +15,15 @@ from flexbase.cli.main import main
 from flexbase.report.page.write import save_page
 
 MAPS, FAST, ROBOTS = "maps", "fast", "robots"
-EXTRAS = {"casadi", "clarabel", "control", "cvxpy", "distributed", "llvmlite", "llvmlite.binding"}
-EXTRAS |= {"mujoco", "pinocchio", "plotly", "zarr"}
-INSTALLED = [name for name in EXTRAS if find_spec(name.partition(".")[0])]
+EXTRAS = {"casadi", "clarabel", "control", "cvxpy", "distributed", "llvmlite", "mujoco", "pinocchio", "plotly", "zarr"}
+INSTALLED = [name for name in EXTRAS if find_spec(name)]
 
 
 @pytest.fixture(autouse=True)
 def hidden(monkeypatch):
-    for name in INSTALLED:
+    """Packages, and what earlier tests have imported of them."""
+    loaded = [name for name in sys.modules if name.partition(".")[0] in INSTALLED]
+    for name in {*INSTALLED, "llvmlite.binding", *loaded}:
         monkeypatch.setitem(sys.modules, name, None)
 
 
