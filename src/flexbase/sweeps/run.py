@@ -33,10 +33,10 @@ QUICK_BLOCK, SLOW_BLOCK = 1 << 20, 1 << 14  # cells a block: compiled, or with s
 def sweep(
     plant: Plant,
     measures: Sequence[str] = ("robustness",),
-    cells: Cells = Cells(),  # noqa: B008
+    cells: Cells = Cells(),
     *,
     loop: Asked = None,
-    execution: Execution = Execution(),  # noqa: B008
+    execution: Execution = Execution(),
     progress: Progress = no_progress,
 ) -> xarray.Dataset:
     """Measures over many configurations, the base at its equilibrium; an `xarray.Dataset`.

@@ -23,7 +23,7 @@ Exit status: 0 sound, 2 not.""",
 
 
 @app.default
-def check(robot: Robot, /, *, pose: PoseOptions = PoseOptions(), json: Json = False) -> None:  # noqa: B008
+def check(robot: Robot, /, *, pose: PoseOptions = PoseOptions(), json: Json = False) -> None:
     """Load a project and show what it says; with --tip or --joints also what holds there."""
     plant = load(robot)
     show("check", check_of(plant, pose.pose_or_none(plant)), json)

@@ -37,10 +37,10 @@ def compare(
     robot: Robot,
     /,
     *,
-    pose: PoseOptions = PoseOptions(),  # noqa: B008
+    pose: PoseOptions = PoseOptions(),
     method: Annotated[Names, option(names, "NAMES", "with commas; all if left out", ("--method", "--methods"))] = (),
-    loop: GainOptions = GainOptions(),  # noqa: B008
-    run: SensingOptions = SensingOptions(),  # noqa: B008
+    loop: GainOptions = GainOptions(),
+    run: SensingOptions = SensingOptions(),
     out: Out = None,
     json: Json = False,
 ) -> None:

@@ -41,10 +41,10 @@ def design(
     robot: Robot,
     /,
     *,
-    pose: PoseOptions = PoseOptions(),  # noqa: B008
-    by: MethodOptions = MethodOptions(),  # noqa: B008
-    loop: GainOptions = GainOptions(),  # noqa: B008
-    run: SensingOptions = SensingOptions(),  # noqa: B008
+    pose: PoseOptions = PoseOptions(),
+    by: MethodOptions = MethodOptions(),
+    loop: GainOptions = GainOptions(),
+    run: SensingOptions = SensingOptions(),
     out: Out = None,
     json: Json = False,
 ) -> int:

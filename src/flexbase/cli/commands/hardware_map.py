@@ -36,10 +36,10 @@ def hardware_map(
     *,
     method: Annotated[str, Parameter(metavar="NAME", help="designed anew in every cell; none if left out")] = "none",
     compensator: CompensatorFile = None,
-    cells: TipCells = TipCells(),  # noqa: B008
-    loop: GainOptions = GainOptions(),  # noqa: B008
-    run: SensingOptions = SensingOptions(),  # noqa: B008
-    execution: VerdictExecution = VerdictExecution(),  # noqa: B008
+    cells: TipCells = TipCells(),
+    loop: GainOptions = GainOptions(),
+    run: SensingOptions = SensingOptions(),
+    execution: VerdictExecution = VerdictExecution(),
     out: Out = None,
     json: Json = False,
 ) -> None:

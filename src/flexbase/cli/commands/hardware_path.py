@@ -38,8 +38,8 @@ def hardware_path(
     method: Annotated[str, Parameter(metavar="NAME", help="designed anew at every tip; none if left out")] = "none",
     compensator: CompensatorFile = None,
     elbow: AnyElbow = None,
-    loop: GainOptions = GainOptions(),  # noqa: B008
-    run: SensingOptions = SensingOptions(),  # noqa: B008
+    loop: GainOptions = GainOptions(),
+    run: SensingOptions = SensingOptions(),
     workers: Annotated[int | None, Parameter(metavar="N", help="processes; one a core if left out")] = None,
     out: Out = None,
     json: Json = False,

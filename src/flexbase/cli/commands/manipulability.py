@@ -33,7 +33,7 @@ def manipulability(
     robot: Robot,
     /,
     *,
-    pose: PoseOptions = PoseOptions(),  # noqa: B008
+    pose: PoseOptions = PoseOptions(),
     compensator: CompensatorFile = None,
     convention: Annotated[
         str | None, Parameter(metavar="NAME", help="show only force or torque; JSON holds both")

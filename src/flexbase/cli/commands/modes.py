@@ -28,7 +28,7 @@ def modes(
     robot: Robot,
     /,
     *,
-    pose: PoseOptions = PoseOptions(),  # noqa: B008
+    pose: PoseOptions = PoseOptions(),
     compensator: CompensatorFile = None,
     out: Out = None,
     json: Json = False,

@@ -36,15 +36,15 @@ def probability(
     robot: Robot,
     /,
     *,
-    pose: PoseOptions = PoseOptions(),  # noqa: B008
-    cells: StudyCells = StudyCells(),  # noqa: B008
-    draws: DrawOptions = DrawOptions(),  # noqa: B008
+    pose: PoseOptions = PoseOptions(),
+    cells: StudyCells = StudyCells(),
+    draws: DrawOptions = DrawOptions(),
     criterion: Annotated[
         Names, option(names, "NAMES", "with commas, all must hold; definite,robust", ("--criterion", "--criteria"))
     ] = ("definite", "robust"),
     compensator: CompensatorFile = None,
     redesign: Annotated[bool, Parameter(help="instead: the exact design for the plant as it is, of each pose")] = False,
-    execution: StudyExecution = StudyExecution(),  # noqa: B008
+    execution: StudyExecution = StudyExecution(),
     out: Out = None,
     json: Json = False,
 ) -> None:

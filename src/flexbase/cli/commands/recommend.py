@@ -33,9 +33,9 @@ def recommend_controller(
     robot: Robot,
     /,
     *,
-    pose: PoseOptions = PoseOptions(),  # noqa: B008
-    loop: GainOptions = GainOptions(),  # noqa: B008
-    run: SensingOptions = SensingOptions(),  # noqa: B008
+    pose: PoseOptions = PoseOptions(),
+    loop: GainOptions = GainOptions(),
+    run: SensingOptions = SensingOptions(),
     out: Out = None,
     json: Json = False,
 ) -> int:

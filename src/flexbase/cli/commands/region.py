@@ -35,12 +35,12 @@ def region(
     robot: Robot,
     /,
     *,
-    pose: PoseOptions = PoseOptions(),  # noqa: B008
+    pose: PoseOptions = PoseOptions(),
     method: Annotated[str | None, Parameter(metavar="NAME", help="whose controller; none if left out")] = None,
     compensator: CompensatorFile = None,
     half_width: Annotated[float, option(number, "M", "of the region, 0.15 if left out [m or rad]")] = 0.15,
-    loop: GainOptions = GainOptions(),  # noqa: B008
-    run: SensingOptions = SensingOptions(),  # noqa: B008
+    loop: GainOptions = GainOptions(),
+    run: SensingOptions = SensingOptions(),
     out: Out = None,
     json: Json = False,
 ) -> None:

@@ -38,12 +38,12 @@ def safe_gain(
     robot: Robot,
     /,
     *,
-    pose: PoseOptions = PoseOptions(),  # noqa: B008
+    pose: PoseOptions = PoseOptions(),
     method: Annotated[Names, option(names, "NAMES", "with commas; none if left out", ("--method", "--methods"))] = (
         "none",
     ),
-    loop: GainOptions = GainOptions(),  # noqa: B008
-    run: SensingOptions = SensingOptions(),  # noqa: B008
+    loop: GainOptions = GainOptions(),
+    run: SensingOptions = SensingOptions(),
     out: Out = None,
     json: Json = False,
 ) -> None:

@@ -39,8 +39,8 @@ def simulate(
     goal: Annotated[Vector, option(numbers, "X,Y", "where it settles [m, rad]", name="--to", group=MOVE)],
     elbow: Annotated[Elbow, Parameter(group=MOVE)] = None,
     compensator: CompensatorFile = None,
-    move: MoveOptions = MoveOptions(),  # noqa: B008
-    gains: GainOptions = GainOptions(),  # noqa: B008
+    move: MoveOptions = MoveOptions(),
+    gains: GainOptions = GainOptions(),
     out: Out = None,
     json: Json = False,
 ) -> int:

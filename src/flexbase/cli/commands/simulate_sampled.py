@@ -45,10 +45,10 @@ def simulate_sampled(
     goal: Annotated[Vector, option(numbers, "X,Y", "where it settles [m, rad]", name="--to", group=MOVE)],
     elbow: Annotated[Elbow, Parameter(group=MOVE)] = None,
     compensator: CompensatorFile = None,
-    move: SampledMoveOptions = SampledMoveOptions(),  # noqa: B008
-    gains: GainOptions = GainOptions(),  # noqa: B008
-    by: SampledOptions = SampledOptions(),  # noqa: B008
-    senses: SensingOptions = SensingOptions(),  # noqa: B008
+    move: SampledMoveOptions = SampledMoveOptions(),
+    gains: GainOptions = GainOptions(),
+    by: SampledOptions = SampledOptions(),
+    senses: SensingOptions = SensingOptions(),
     out: Out = None,
     json: Json = False,
 ) -> int:

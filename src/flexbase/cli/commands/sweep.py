@@ -39,8 +39,8 @@ def sweep(
     measures: Annotated[
         Names, option(names, "NAMES", "with commas; robustness if left out", ("--measures", "--measure"))
     ] = ("robustness",),
-    cells: CellOptions = CellOptions(),  # noqa: B008
-    execution: ExecutionOptions = ExecutionOptions(),  # noqa: B008
+    cells: CellOptions = CellOptions(),
+    execution: ExecutionOptions = ExecutionOptions(),
     compensator: CompensatorFile = None,
     difference: Annotated[bool, Parameter(help="what the compensator changes: with it minus without")] = False,
     out: Out = None,

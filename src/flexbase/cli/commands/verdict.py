@@ -31,7 +31,7 @@ def verdict(
     robot: Robot,
     /,
     *,
-    pose: PoseOptions = PoseOptions(),  # noqa: B008
+    pose: PoseOptions = PoseOptions(),
     compensator: CompensatorFile = None,
     bandwidth: Annotated[float | None, option(number, "W", "judge up to this frequency only [rad/s]")] = None,
     out: Out = None,

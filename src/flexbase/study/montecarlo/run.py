@@ -45,8 +45,8 @@ def montecarlo(
     loop: Asked = None,
     redesign: bool = False,
     criteria: Sequence[Criterion | str] = USUAL,
-    cells: Cells = Cells(),  # noqa: B008
-    execution: Execution = Execution(),  # noqa: B008
+    cells: Cells = Cells(),
+    execution: Execution = Execution(),
     progress: Progress = no_progress,
 ) -> MonteCarlo:
     """Probability that a design holds while the plant's parameters vary: at a pose, or in all cells of a plant's map.

@@ -74,10 +74,10 @@ class Judge:
 def hardware_map(
     plant: Plant,
     method: str = "none",
-    cells: Cells = Cells(),  # noqa: B008
+    cells: Cells = Cells(),
     *,
     loop: Asked = None,
-    execution: Execution = Execution(),  # noqa: B008
+    execution: Execution = Execution(),
     progress: Progress = no_progress,
 ) -> xarray.Dataset:
     """Verdicts over tips, an `xarray.Dataset` like that of a sweep; `MEASURES` says what is in it.

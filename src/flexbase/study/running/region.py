@@ -106,7 +106,7 @@ def region(
     *,
     half_width: float = 0.15,
     shape: Sequence[int] = (25, 25),
-    execution: Execution = Execution(),  # noqa: B008
+    execution: Execution = Execution(),
     progress: Progress = no_progress,
 ) -> Region:
     """Verdicts in a window around the tip, over the first two task rows; the other rows stay where they are.
