@@ -7,14 +7,12 @@ from typing import Annotated
 from cyclopts import App, Parameter
 
 from flexbase.cli.options.common import Json, option
-from flexbase.cli.options.gains import GainOptions
+from flexbase.cli.options.loop import LoopOptions
 from flexbase.cli.options.pose import PoseOptions, Robot
-from flexbase.cli.options.sensing import SensingOptions
 from flexbase.cli.options.values import Names, names
 from flexbase.cli.terminal.out import OutFile, check_out, write_out
 from flexbase.cli.terminal.progress import progress_bar
 from flexbase.cli.terminal.show import say
-from flexbase.model.loop import Loop
 from flexbase.plant import load
 from flexbase.study.running.comparison import compare as compare_at
 from flexbase.synthesis import HARDWARE_METHODS
@@ -39,17 +37,15 @@ def compare(
     *,
     pose: PoseOptions = PoseOptions(),
     method: Annotated[Names, option(names, "NAMES", "with commas; all if left out", ("--method", "--methods"))] = (),
-    loop: GainOptions = GainOptions(),
-    run: SensingOptions = SensingOptions(),
+    loop: LoopOptions = LoopOptions(),
     out: Out = None,
     json: Json = False,
 ) -> None:
     """Every controller in the sampled loop: margins, changed robots, stiffness."""
     check_out(out, (".json",))
     plant = load(robot)
-    meant, at = Loop(None, loop.gains(plant), run.sensing(plant)), pose.pose(plant)
     with progress_bar() as progress:
-        found = compare_at(at, method or None, meant, progress)
-    content = {"declared": run.declared(plant), **found.to_dict()}
+        found = compare_at(pose.pose(plant), method or None, loop.loop(plant), progress)
+    content = {"declared": loop.declared(plant), **found.to_dict()}
     write_out(out, "compare", found, content)
     say("compare", content, found.sheet(), json, out)

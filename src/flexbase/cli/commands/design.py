@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated
 
 from cyclopts import App, Parameter
 
 from flexbase.cli.options.common import Json
 from flexbase.cli.options.from_request import options_given
-from flexbase.cli.options.gains import GainOptions
+from flexbase.cli.options.loop import LoopOptions
 from flexbase.cli.options.method import MethodOptions
 from flexbase.cli.options.pose import PoseOptions, Robot
-from flexbase.cli.options.sensing import SensingOptions
 from flexbase.cli.terminal.document import document
 from flexbase.cli.terminal.out import PICTURES, OutFile, check_out
 from flexbase.cli.terminal.screen import put
 from flexbase.cli.terminal.show import say
 from flexbase.compensators import design as design_at
 from flexbase.errors import Infeasible
-from flexbase.model.loop import Loop
 from flexbase.plant import load
 from flexbase.sheets.sheet import together
 from flexbase.study.running.as_it_runs import as_it_runs
@@ -43,8 +42,7 @@ def design(
     *,
     pose: PoseOptions = PoseOptions(),
     by: MethodOptions = MethodOptions(),
-    loop: GainOptions = GainOptions(),
-    run: SensingOptions = SensingOptions(),
+    loop: LoopOptions = LoopOptions(),
     out: Out = None,
     json: Json = False,
 ) -> int:
@@ -52,10 +50,10 @@ def design(
     is_picture = out is not None and out.suffix.lower() in PICTURES
     check_out(out, (".json",) if is_picture else ())  # it is JSON whatever its name
     plant = load(robot)
-    gains, sensing = loop.gains(plant), run.sensing(plant) if run.declared(plant) else None
+    meant = loop.loop(plant)
     try:
         at = pose.pose(plant)
-        found = design_at(at, by.method, Loop(gains=gains), **options_given(by))
+        found = design_at(at, by.method, meant, **options_given(by))
     except Infeasible as reason:
         if not json:
             raise
@@ -63,7 +61,7 @@ def design(
         return 1
     if out is not None:
         found.save(out)
-    real = as_it_runs(at, Loop(found, gains, sensing))
+    real = as_it_runs(at, replace(meant, compensator=found))
     sheet = together(found.sheet(), *([] if real is None else [real.sheet()]))
     say("design", {**found.to_dict(), "as_it_runs": real}, sheet, json, out)
     return 0

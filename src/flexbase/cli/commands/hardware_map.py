@@ -8,14 +8,12 @@ from typing import Annotated
 from cyclopts import App, Parameter
 
 from flexbase.cli.options.cells import TipCells, VerdictExecution
-from flexbase.cli.options.common import CompensatorFile, Json
-from flexbase.cli.options.gains import GainOptions
-from flexbase.cli.options.pose import Robot, compensator_of
-from flexbase.cli.options.sensing import SensingOptions
+from flexbase.cli.options.common import Json
+from flexbase.cli.options.loop import CompensatedLoopOptions
+from flexbase.cli.options.pose import Robot
 from flexbase.cli.terminal.cells_bar import cells_bar
 from flexbase.cli.terminal.map_files import check_map_out, show_map, store_of
 from flexbase.cli.terminal.out import OutFile
-from flexbase.model.loop import Loop
 from flexbase.plant import load
 from flexbase.study.running.hardware_map import hardware_map as map_of
 
@@ -35,10 +33,8 @@ def hardware_map(
     /,
     *,
     method: Annotated[str, Parameter(metavar="NAME", help="designed anew in every cell; none if left out")] = "none",
-    compensator: CompensatorFile = None,
     cells: TipCells = TipCells(),
-    loop: GainOptions = GainOptions(),
-    run: SensingOptions = SensingOptions(),
+    loop: CompensatedLoopOptions = CompensatedLoopOptions(),
     execution: VerdictExecution = VerdictExecution(),
     out: Out = None,
     json: Json = False,
@@ -46,8 +42,7 @@ def hardware_map(
     """Stability, margins, changed robots and stiffness, each cell with a controller of its own."""
     check_map_out(out, execution.resume)
     plant = load(robot)
-    meant = Loop(compensator_of(plant, compensator), loop.gains(plant), run.sensing(plant))
     with cells_bar(store_of(out)) as progress:
         how = replace(execution, store=store_of(out))
-        found = map_of(plant, method, cells, loop=meant, execution=how, progress=progress)
+        found = map_of(plant, method, cells, loop=loop.loop(plant), execution=how, progress=progress)
     show_map("hardware-map", found, json, out)

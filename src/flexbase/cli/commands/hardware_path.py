@@ -7,16 +7,13 @@ from typing import Annotated
 
 from cyclopts import App, Parameter
 
-from flexbase.cli.options.common import CompensatorFile, Json
-from flexbase.cli.options.elbow import AnyElbow
-from flexbase.cli.options.gains import GainOptions
-from flexbase.cli.options.pose import Robot, compensator_of
-from flexbase.cli.options.sensing import SensingOptions
+from flexbase.cli.options.common import Json
+from flexbase.cli.options.loop import CompensatedLoopOptions
+from flexbase.cli.options.pose import AnyElbow, Robot
 from flexbase.cli.options.tips import tips_of
 from flexbase.cli.terminal.out import OutFile, check_out
 from flexbase.cli.terminal.progress import progress_bar
 from flexbase.cli.terminal.show import show
-from flexbase.model.loop import Loop
 from flexbase.plant import load
 from flexbase.study.running.hardware_path import hardware_path as path_of
 
@@ -36,10 +33,8 @@ def hardware_path(
     *,
     path: Annotated[Path, Parameter(metavar="FILE", help="tips, one a line (.csv) [m, rad]")],
     method: Annotated[str, Parameter(metavar="NAME", help="designed anew at every tip; none if left out")] = "none",
-    compensator: CompensatorFile = None,
     elbow: AnyElbow = None,
-    loop: GainOptions = GainOptions(),
-    run: SensingOptions = SensingOptions(),
+    loop: CompensatedLoopOptions = CompensatedLoopOptions(),
     workers: Annotated[int | None, Parameter(metavar="N", help="processes; one a core if left out")] = None,
     out: Out = None,
     json: Json = False,
@@ -47,7 +42,6 @@ def hardware_path(
     """Stability, margins, changed robots and stiffness, each tip with a controller of its own."""
     check_out(out, (".json",))
     plant, tips = load(robot), tips_of(path)
-    meant = Loop(compensator_of(plant, compensator), loop.gains(plant), run.sensing(plant))
     with progress_bar() as progress:
-        found = path_of(plant, tips, method, loop=meant, branch=elbow, workers=workers, progress=progress)
+        found = path_of(plant, tips, method, loop=loop.loop(plant), branch=elbow, workers=workers, progress=progress)
     show("hardware-path", found, json, out)

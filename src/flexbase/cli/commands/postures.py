@@ -7,8 +7,7 @@ from typing import Annotated
 from cyclopts import App, Parameter
 
 from flexbase.cli.options.common import CompensatorFile, Json, blaming, option
-from flexbase.cli.options.elbow import AnyElbow
-from flexbase.cli.options.pose import Robot, compensator_of
+from flexbase.cli.options.pose import AnyElbow, Robot, compensator_of
 from flexbase.cli.options.values import Vector, numbers
 from flexbase.cli.terminal.out import Out, check_out
 from flexbase.cli.terminal.show import show

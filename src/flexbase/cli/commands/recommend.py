@@ -7,15 +7,13 @@ from typing import Annotated
 from cyclopts import App, Parameter
 
 from flexbase.cli.options.common import Json
-from flexbase.cli.options.gains import GainOptions
+from flexbase.cli.options.loop import LoopOptions
 from flexbase.cli.options.pose import PoseOptions, Robot
-from flexbase.cli.options.sensing import SensingOptions
 from flexbase.cli.terminal.out import OutFile, check_out
 from flexbase.cli.terminal.progress import progress_bar
 from flexbase.cli.terminal.show import show
-from flexbase.model.loop import Loop
 from flexbase.plant import load
-from flexbase.study.running.recommend import recommend
+from flexbase.study.running.recommend import recommend as recommend_at
 
 app = App(
     name="recommend",
@@ -29,13 +27,12 @@ Out = Annotated[OutFile, Parameter(help="write the answer as .json")]
 
 
 @app.default
-def recommend_controller(
+def recommend(
     robot: Robot,
     /,
     *,
     pose: PoseOptions = PoseOptions(),
-    loop: GainOptions = GainOptions(),
-    run: SensingOptions = SensingOptions(),
+    loop: LoopOptions = LoopOptions(),
     out: Out = None,
     json: Json = False,
 ) -> int:
@@ -43,7 +40,6 @@ def recommend_controller(
     check_out(out, (".json",))
     plant = load(robot)
     with progress_bar() as report:
-        sensing = run.sensing(plant) if run.declared(plant) else None
-        found = recommend(pose.pose(plant), loop=Loop(None, loop.gains(plant), sensing), workers=None, progress=report)
+        found = recommend_at(pose.pose(plant), loop=loop.loop(plant), progress=report)
     show("recommend", found, json, out)
     return 0 if found.best else 1

@@ -6,15 +6,13 @@ from typing import Annotated
 
 from cyclopts import App, Parameter
 
-from flexbase.cli.options.common import CompensatorFile, Json, option
-from flexbase.cli.options.gains import GainOptions
-from flexbase.cli.options.pose import PoseOptions, Robot, compensator_of
-from flexbase.cli.options.sensing import SensingOptions
+from flexbase.cli.options.common import Json, option
+from flexbase.cli.options.loop import CompensatedLoopOptions
+from flexbase.cli.options.pose import PoseOptions, Robot
 from flexbase.cli.options.values import number
 from flexbase.cli.terminal.out import Out, check_out
 from flexbase.cli.terminal.progress import progress_bar
 from flexbase.cli.terminal.show import show
-from flexbase.model.loop import Loop
 from flexbase.plant import load
 from flexbase.study.running.region import region as region_of
 from flexbase.synthesis import HARDWARE_METHODS
@@ -37,18 +35,15 @@ def region(
     *,
     pose: PoseOptions = PoseOptions(),
     method: Annotated[str | None, Parameter(metavar="NAME", help="whose controller; none if left out")] = None,
-    compensator: CompensatorFile = None,
     half_width: Annotated[float, option(number, "M", "of the region, 0.15 if left out [m or rad]")] = 0.15,
-    loop: GainOptions = GainOptions(),
-    run: SensingOptions = SensingOptions(),
+    loop: CompensatedLoopOptions = CompensatedLoopOptions(),
     out: Out = None,
     json: Json = False,
 ) -> None:
     """The cells around a pose in which its controller is stable, keeps its margins, and survives changed robots."""
     check_out(out)
     plant = load(robot)
-    at = pose.pose(plant)
-    meant = Loop(compensator_of(plant, compensator), loop.gains(plant), run.sensing(plant))
+    at, meant = pose.pose(plant), loop.loop(plant)
     with progress_bar() as progress:
         found = region_of(at, method, meant, half_width=half_width, progress=progress)
     show("region", found, json, out)

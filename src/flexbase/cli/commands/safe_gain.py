@@ -7,14 +7,12 @@ from typing import Annotated
 from cyclopts import App, Parameter
 
 from flexbase.cli.options.common import Json, option
-from flexbase.cli.options.gains import GainOptions
+from flexbase.cli.options.loop import LoopOptions
 from flexbase.cli.options.pose import PoseOptions, Robot
-from flexbase.cli.options.sensing import SensingOptions
 from flexbase.cli.options.values import Names, names
 from flexbase.cli.terminal.out import OutFile, check_out, write_out
 from flexbase.cli.terminal.progress import progress_bar
 from flexbase.cli.terminal.show import say
-from flexbase.model.loop import Loop
 from flexbase.plant import load
 from flexbase.study.running.safe_gain import safe_gain as safe_gain_of
 from flexbase.study.running.safe_gain import sheet_of_gains
@@ -42,20 +40,19 @@ def safe_gain(
     method: Annotated[Names, option(names, "NAMES", "with commas; none if left out", ("--method", "--methods"))] = (
         "none",
     ),
-    loop: GainOptions = GainOptions(),
-    run: SensingOptions = SensingOptions(),
+    loop: LoopOptions = LoopOptions(),
     out: Out = None,
     json: Json = False,
 ) -> None:
     """The highest gain at which a method's controller is safe, and at which it is merely stable."""
     check_out(out, (".json",))
     plant = load(robot)
-    meant, at = Loop(None, loop.gains(plant), run.sensing(plant)), pose.pose(plant)
+    at, meant = pose.pose(plant), loop.loop(plant)
     found = []
     with progress_bar() as progress:
         for done, name in enumerate(method):
             progress(name, done, len(method))
             found.append(safe_gain_of(at, name, meant))
-    content = {"declared": run.declared(plant), "safe_gain": found}
+    content = {"declared": loop.declared(plant), "safe_gain": found}
     write_out(out, "safe-gain", found, content)
     say("safe-gain", content, sheet_of_gains(found), json, out)

@@ -7,17 +7,15 @@ from typing import Annotated
 from cyclopts import App, Parameter
 
 from flexbase.cli.commands.simulate import MOVE
-from flexbase.cli.options.common import CompensatorFile, Json, option
+from flexbase.cli.options.common import Json, option
 from flexbase.cli.options.from_request import options_given
-from flexbase.cli.options.gains import GainOptions
+from flexbase.cli.options.loop import CompensatedLoopOptions
 from flexbase.cli.options.move import SampledMoveOptions
 from flexbase.cli.options.pose import Elbow, Robot, compensator_of, tip_pose
 from flexbase.cli.options.sampled import SampledOptions
-from flexbase.cli.options.sensing import SensingOptions
 from flexbase.cli.options.values import Vector, numbers
 from flexbase.cli.terminal.out import Out, check_out
 from flexbase.cli.terminal.show import show
-from flexbase.model.loop import Loop
 from flexbase.plant import load
 from flexbase.simulation import simulate_sampled as run_of
 from flexbase.synthesis.make import make_controller
@@ -44,21 +42,18 @@ def simulate_sampled(
     start: Annotated[Vector, option(numbers, "X,Y", "where the tip starts [m, rad]", name="--from", group=MOVE)],
     goal: Annotated[Vector, option(numbers, "X,Y", "where it settles [m, rad]", name="--to", group=MOVE)],
     elbow: Annotated[Elbow, Parameter(group=MOVE)] = None,
-    compensator: CompensatorFile = None,
     move: SampledMoveOptions = SampledMoveOptions(),
-    gains: GainOptions = GainOptions(),
     by: SampledOptions = SampledOptions(),
-    senses: SensingOptions = SensingOptions(),
+    loop: CompensatedLoopOptions = CompensatedLoopOptions(),
     out: Out = None,
     json: Json = False,
 ) -> int:
     """Joint tracking up to the switch, then the sampled controller, on the nonlinear model."""
     check_out(out)
     plant = load(robot)
-    law = compensator_of(plant, compensator)
-    there = tip_pose(plant, "--to", goal, elbow, near=law)
+    meant = loop.loop(plant)
+    there = tip_pose(plant, "--to", goal, elbow, near=compensator_of(plant, loop.compensator))
     here = tip_pose(plant, "--from", start, elbow, near=there)
-    meant = Loop(law, gains.gains(plant), senses.sensing(plant))
     controller = make_controller(there, by.method, meant, **options_given(by))
     found = run_of(controller, here, push=by.push(move), move=move)
     show("simulate-sampled", found, json, out)

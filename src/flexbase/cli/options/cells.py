@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from cyclopts import Group
 
-from flexbase.cli.options.assignments import assignments
 from flexbase.cli.options.from_request import from_request
-from flexbase.cli.options.values import sign
+from flexbase.cli.options.values import assignments, sign
 from flexbase.study.montecarlo import Draws
 from flexbase.sweeps import Cells, Execution
 

@@ -9,14 +9,16 @@ from typing import Annotated
 from cyclopts import Group, Parameter
 
 from flexbase.cli.options.common import blaming, option
-from flexbase.cli.options.elbow import Elbow as Elbow
-from flexbase.cli.options.values import Vector, numbers
+from flexbase.cli.options.values import Vector, numbers, sign
 from flexbase.control.compensator import Compensator, load_compensator
 from flexbase.errors import InputError
 from flexbase.model.loop import loop_on
 from flexbase.plant import Plant, Pose
 
 Robot = Annotated[str, Parameter(help="bundled name (see: flexbase robots) or path of a project file")]
+SIDES = ("--elbow", "--branch")
+Elbow = Annotated[str | None, option(sign, "+|-", "elbow; or shoulder, elbow, wrist: +-+; else the project's", SIDES)]
+AnyElbow = Annotated[str | None, option(sign, "+|-", "elbow; or shoulder, elbow, wrist: +-+; else the best", SIDES)]
 POSE = Group("Pose", sort_key=10)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 from flexbase.errors import InputError
 from flexbase.model.task import BRANCHES
@@ -62,6 +63,19 @@ def ranges(text: str, option: str) -> tuple[tuple[str, Range], ...]:
         count = whole(ends[2].strip(), option) if len(ends) == 3 else 2
         found.append((name.strip(), (number(ends[0], option), number(ends[1], option), count)))
     return tuple(found)
+
+
+def assignments(text: str, option: str) -> tuple[tuple[str, str], ...]:
+    """Names with a text each, such as payload=uniform(0,3); commas in brackets do not part them. Raises InputError."""
+    found: dict[str, str] = {}
+    for part in re.split(r",(?![^()]*\))", text):
+        name, equals, given = (word.strip() for word in part.partition("="))
+        if not (name and equals and given):
+            raise InputError(f'{option}: "{part}" is not NAME=KIND:A:B. Give such as payload=uniform:0:3.')
+        if name in found:
+            raise InputError(f"{option}: {name} is given twice. Give it once.")
+        found[name] = given
+    return tuple(found.items())
 
 
 def sign(text: str, option: str) -> str:
