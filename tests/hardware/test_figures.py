@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+import flexbase as fb
 from flexbase.sampled.figures import FIGURES
+from flexbase.sampled.judged import judged
+from flexbase.sampled.verdict import HardwareVerdict, verdict_of
+from flexbase.sheets.sheet import BAD, GOOD, Answer
 
 CELLS = {
     "spectral_radius": [(0.997852, "0.9979"), (1.2, "1.2000")],
@@ -61,3 +65,30 @@ def test_a_loop_that_is_at_rest_after_a_sample_has_no_time_constant() -> None:
     assert FIGURES["time_constant_s"].run(Settled()) is None  # type: ignore[arg-type]
     Settled.radius = 0.9048374180359595
     assert FIGURES["time_constant_s"].run(Settled()) == pytest.approx(0.01, rel=1e-12)  # type: ignore[arg-type]
+
+
+SPOKEN = [
+    (False, True, (), 0.5, "unstable as it runs: spectral radius 0.9979 a sample", BAD),
+    (True, True, (), 0.3, "stable as it runs, disk margin 0.30; survives changes of the robot", GOOD),
+    (True, True, (), 0.12, "stable as it runs, disk margin 0.12, below 0.3; survives changes of the robot", BAD),
+    (True, False, ("a", "b"), 0.5, "stable as it runs, disk margin 0.50; fails with a, b", BAD),
+]
+
+
+@pytest.mark.parametrize(("stable", "survives", "failed", "margin", "said", "tone"), SPOKEN)
+def test_the_sentence(
+    stable: bool, survives: bool, failed: tuple[str, ...], margin: float, said: str, tone: str
+) -> None:
+    """Only a safe loop is good."""
+    told = {"spectral_radius": 0.997852, "disk_margin_torque": 0.9, "disk_margin_sensor": margin}
+    verdict = HardwareVerdict("exact", stable, survives, failed, "a", told)
+    assert verdict.statement == said
+    assert verdict.answer() == Answer(tone, said[0].upper() + said[1:])
+
+
+def test_all_figures_are_computed_unless_brief_is_asked(paper_pose: fb.Pose) -> None:
+    found = judged(fb.make_controller(paper_pose, "lqg"))
+    assert verdict_of(found).figures == {name: one.run(found) for name, one in FIGURES.items()}
+    assert {name for name, value in verdict_of(found, brief=True).figures.items() if value is None} == {
+        name for name, one in FIGURES.items() if not one.brief
+    }

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import flexbase as fb
 from flexbase.errors import Infeasible
+from flexbase.linear.discrete.system import Discrete
 from flexbase.sampled.judged import ALMOST, SAFE, STABLE, UNSTABLE
+from flexbase.sampled.noise import torque_noise
 from flexbase.sampled.verdict import HardwareVerdict
 from flexbase.study.running import recommend as room
 from flexbase.study.running.recommend import Candidate, Recommendation, choose_best
@@ -109,6 +112,12 @@ def test_of_stable_ones_the_larger_margin_is_best() -> None:
     assert choose_best([]) is None
 
 
+@pytest.mark.parametrize("correction", [0.0, None])
+def test_what_corrects_nothing_is_no_answer_beside_what_does(correction: float | None) -> None:
+    deaf = candidate("deaf", tip_correction=correction, dynamic_stiffness=9e5)
+    assert choose_best([deaf, A]) is A
+
+
 @pytest.mark.parametrize(("border", "told"), [(0.04, None), (0.05, 0.05), (0.29, 0.2), (0.3, 0.3), (0.9, 0.5)])
 def test_how_wrong_the_base_may_be(
     paper_pose: fb.Pose, monkeypatch: pytest.MonkeyPatch, border: float, told: float | None
@@ -121,7 +130,8 @@ def test_how_wrong_the_base_may_be(
 
         @property
         def survives(self) -> bool:
-            assert [round(one.base_stiffness - 1.0, 9) > 0.0 for one in self.changes] == [False, True]
+            softer, stiffer = (one.base_stiffness for one in self.changes)
+            assert softer < 1.0 < stiffer == pytest.approx(2.0 - softer)
             return all(one.base_stiffness >= 1.0 - border - 1e-9 for one in self.changes)
 
     monkeypatch.setattr(room, "Judged", Found)
@@ -142,6 +152,18 @@ def test_sensors_are_those_that_the_law_reads(paper_pose: fb.Pose) -> None:
     shaped = room._sensors(fb.make_controller(paper_pose, "exact", loop))
     assert shaped == ("a task sensor", "joint accelerometers", "4000 Hz")
     assert room._sensors(fb.make_controller(paper_pose, "coprime", loop))[:2] == ("a task sensor", "joint encoders")
+
+
+def test_one_channel_of_a_sensor_is_enough_to_need_it(paper_pose: fb.Pose) -> None:
+    """By a state or straight through, in one of two torques: the first and the last channel of each sensor."""
+    made = fb.make_controller(paper_pose, "none")
+    for channel, sensor in enumerate(["a task sensor", "joint encoders", "joint accelerometers"]):
+        for number in (2 * channel, 2 * channel + 1):
+            for matrix in "BD":
+                parts = {"B": np.zeros((2, 6)), "D": np.zeros((2, 6))}
+                parts[matrix][0, number] = 1.0
+                system = Discrete(np.zeros((2, 2)), parts["B"], np.eye(2), parts["D"], made.system.step)
+                assert room._sensors(replace(made, system=system)) == (sensor, "1000 Hz")
 
 
 def test_a_refusal_is_its_first_sentence(paper_pose: fb.Pose, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -167,6 +189,6 @@ def test_rates_and_sensors_other_than_the_own_are_tried(paper_pose: fb.Pose) -> 
     assert steps == [(i + 1, 14) for i in range(14)]
     none, lqg = found.candidates
     assert (none.verdict.stable, none.torque_noise, none.stiffness_error) == (False, None, None)  # type: ignore[union-attr]
-    assert lqg.torque_noise is not None
+    assert lqg.torque_noise == torque_noise(paper_pose, fb.make_controller(paper_pose, "lqg")).max()
     assert lqg.verdict.delay_margin_s is not None  # type: ignore[union-attr]
     assert (found.best, found.declared) == (lqg, True)
