@@ -109,6 +109,7 @@ def test_the_augmented_plant_is_positive_real():
     assert controls >= checked - 1
 
 
+@pytest.mark.slow
 def test_stable_at_every_gain_where_the_usual_choice_is_not():
     """24 poses of a six-joint arm, k = 3, base damping 0.2 %: never unstable where a W exists, to 1e4 times the gains.
 

@@ -166,6 +166,7 @@ def test_runs_that_run_away_are_said_to_diverge(paper, paper_pose):
     np.testing.assert_allclose(runs.q[0], alone.q[0], rtol=0.0, atol=2.0 * CLOSE)
 
 
+@pytest.mark.slow
 def test_a_step_that_is_too_long_is_not_taken_for_divergence(paper, paper_pose):
     """Forty times the damping makes poles forty times as fast as those that the first step is chosen by."""
     start = starts_near(paper, NEAR, 1)[0]

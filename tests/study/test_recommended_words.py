@@ -139,6 +139,11 @@ def test_how_wrong_the_base_may_be(
     assert room._stiffness_error(paper_pose, controller) == told
 
 
+def test_what_has_no_verdict_or_no_figure_does_nothing() -> None:
+    for one in (REFUSED, candidate("a", dynamic_stiffness=None, tip_correction=None, disk_margin_torque=None)):
+        assert (room._stiffness(one), room._correction(one), room._smaller_margin(one)) == (0.0, 0.0, 0.0)
+
+
 def test_what_is_tried() -> None:
     assert room.RATES == (250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0)
     assert room.ERRORS == (0.05, 0.1, 0.2, 0.3, 0.4, 0.5)

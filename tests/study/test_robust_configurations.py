@@ -136,7 +136,10 @@ def test_a_curve_that_is_known() -> None:
     assert chords.sum() == pytest.approx(np.pi, abs=1e-3)
 
 
-@pytest.mark.parametrize(("robot", "modes"), [("ur5e-pedestal", 1), ("ur5e-pedestal", None), ("iiwa-platform", [1, 3])])
+@pytest.mark.parametrize(
+    ("robot", "modes"),
+    [("ur5e-pedestal", 1), ("ur5e-pedestal", None), pytest.param("iiwa-platform", [1, 3], marks=pytest.mark.slow)],
+)
 def test_points_by_modal_analysis(robot: str, modes: int | list[int] | None) -> None:
     """The modes asked for are positive real, to 1e-12; alignment of the others is what the modal analysis says."""
     plant = undamped(robot)
