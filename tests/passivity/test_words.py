@@ -51,7 +51,7 @@ def test_where_it_is_half(verdict):
     assert replace(verdict, half_at=((1.0, 2.0), (3.0, 4.5))).half_in_words() == "1 to 2, 3 to 4.5 rad/s"
 
 
-def test_the_sheet_turns_with_each_figure(verdict, paper_pose):
+def test_the_sheet_turns_with_each_figure(verdict):
     """Each fact as given, and again with the figure on its other side."""
     shown = {
         "Not positive real": {"positive_real": False},
@@ -73,7 +73,7 @@ def test_the_sheet_turns_with_each_figure(verdict, paper_pose):
     assert "up to" not in replace(verdict, bandwidth=None).summary()
     for words, figures in (("fails", {"fails_at": ()}), ("worst at", {"half_at": ()}), ("half of it", {"half_at": ()})):
         assert words not in replace(verdict, **figures).summary()
-    assert all(f"{joint:.3g}" in verdict.summary() for joint in paper_pose.joints)
+    assert "x 0.33 m, y -0.25 m" in verdict.summary()
 
 
 def test_a_system_without_a_pose_is_a_system(verdict):
