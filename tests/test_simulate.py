@@ -322,7 +322,7 @@ def made_up(paper_pose, error, stopped=None, switch=0.1):
     zeros = np.zeros((11, 3))
     torque = np.outer(np.sin(np.arange(11)), [2.0, -5.0])
     rates = np.outer(np.cos(np.arange(11)), [9.0, -3.0, 4.0])
-    return Run(paper_pose, paper_pose, t, zeros, rates, error, torque, switch, True, -1.0, stopped)
+    return Run(paper_pose, t, zeros, rates, error, torque, switch, paper_pose, True, -1.0, stopped=stopped)
 
 
 def test_settling_counts_from_switching_to_the_last_time_outside(paper_pose):

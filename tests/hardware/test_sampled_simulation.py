@@ -297,7 +297,7 @@ def judged(paper_pose, error):
     t = np.arange(len(error)) / 1000.0
     both = np.stack([error, np.zeros(len(error))], axis=1)
     q = np.zeros((len(error), 3))
-    return SampledRun(soft(paper_pose, Sensing()), paper_pose, t, q, q, both, both, 0.0, None, 0.99, 0, "builtin", 0)
+    return SampledRun(paper_pose, t, q, q, both, both, 0.0, soft(paper_pose, Sensing()), None, 0.99, 0, "builtin", 0)
 
 
 @pytest.mark.parametrize(

@@ -92,6 +92,7 @@ def test_tip_cells_of_a_spatial_arm_reach_their_targets() -> None:
         ({"workers": 2, "scheduler": "tcp://127.0.0.1:9"}, "a scheduler is given too"),
         ({"workers": 1.5}, "workers: 1.5"),
         ({"measures": ["robustnes"]}, "robustness"),
+        ({"measures": fb.Cells(shape=(3, 3))}, "measures: Cells given.* cells=Cells"),
     ],
 )
 def test_wrong_questions_are_refused(paper: fb.Plant, options: dict, message: str) -> None:

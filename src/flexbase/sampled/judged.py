@@ -76,7 +76,7 @@ class Judged:
     @property
     def stable(self) -> bool:
         """Whether it settles here."""
-        return _dies_out(self.radius)
+        return dies_out(self.radius)
 
     @cached_property
     def changed_radii(self) -> tuple[float, ...]:
@@ -97,12 +97,12 @@ class Judged:
     def failed(self) -> tuple[str, ...]:
         """The changed robots on which it is unstable."""
         pairs = zip(self.robots.labels, self.changed_radii, strict=True)
-        return tuple(label for label, radius in pairs if not _dies_out(radius))
+        return tuple(label for label, radius in pairs if not dies_out(radius))
 
     @cached_property
     def survives(self) -> bool:
         """Whether it is stable here and on all changed robots; the first that is not decides."""
-        return self.stable and all(_dies_out(self._radius(i)) for i in range(1, 1 + len(self.robots.labels)))
+        return self.stable and all(dies_out(self._radius(i)) for i in range(1, 1 + len(self.robots.labels)))
 
     @cached_property
     def margins(self) -> tuple[float, float]:
@@ -176,7 +176,8 @@ def judged(controller: SampledController, pose: Pose | None = None, changes: Seq
     return Judged(controller, robots_at(here, controller.sensing, changes))
 
 
-def _dies_out(radius: float) -> bool:
+def dies_out(radius: float) -> bool:
+    """The linear verdict on a spectral radius of a sample: every motion dies out, and not by rounding alone."""
     return radius < 1.0 - DRIFT
 
 

@@ -13,36 +13,23 @@ from flexbase.plant import Pose
 from flexbase.sheets import units
 from flexbase.sheets.numbers import number
 from flexbase.sheets.sheet import Column, Sheet, answer, facts, make_sheet, table, words
-from flexbase.sheets.told import Told
-from flexbase.simulation.settling import SETTLED, error_sizes
+from flexbase.simulation.record import Record
+from flexbase.simulation.settling import SETTLED
 
 
 @dataclass(frozen=True, eq=False)
-class Run(Told):
-    """A move and a settling phase, sampled at equal intervals.
+class Run(Record):
+    """A move and a settling phase.
 
-    t : shape (T,) [s]; q, rates : shape (T, N); tip_error : against the goal, shape (T, k)
-    torque : all that the arm's drives deliver, compensator included, shape (T, n)
     switch : when the task-space loop takes over [s]
     closed_loop_abscissa : rightmost pole of the linear loop at the goal [1/s]; positive, the run may only be too short
-    stopped : why the run ended early, or None
     engine : the physics behind it, "builtin" or "mujoco"
-    cautions : what should be known of the loop
     """
 
     start: Pose
-    goal: Pose
-    t: Array
-    q: Array
-    rates: Array
-    tip_error: Array
-    torque: Array
-    switch: float
     compensated: bool
     closed_loop_abscissa: float
-    stopped: str | None = None
     engine: str = "builtin"
-    cautions: tuple[str, ...] = ()
 
     document: ClassVar = (
         "t",
@@ -68,11 +55,6 @@ class Run(Told):
         return np.array(self.t >= self.switch)
 
     @property
-    def error_size(self) -> Array:
-        """Length of the tip error: positions in m, or rotations in rad where larger, shape (T,)."""
-        return error_sizes(self.tip_error, self.goal.arm.task)
-
-    @property
     def settling_time_s(self) -> float | None:
         """Time from switching after which the tip stays below 0.1 mm until the end; None if it never does."""
         outside = np.flatnonzero(self.settling & (self.error_size >= SETTLED))
@@ -90,11 +72,6 @@ class Run(Told):
     def peak_error_m(self) -> float | None:
         """Largest tip error after switching; None if the run ended before."""
         return float(self.error_size[self.settling].max()) if self.settling.any() else None
-
-    @property
-    def peak_torque(self) -> Array:
-        """Largest torque of each arm joint [N m or N], shape (n,)."""
-        return np.asarray(np.abs(self.torque).max(axis=0))
 
     @property
     def peak_speed(self) -> Array:

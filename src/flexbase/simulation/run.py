@@ -54,8 +54,8 @@ def simulate(
     q, rates = np.split(samples.states, 2, axis=1)
     error = task_error(forward(plant.arm.mechanism, tuple(q.T)), plant.arm.task, there.target)
     return Run(
-        here, there, samples.times, q, rates, error, samples.torque, move.switch, spec.E is not None, pole, stopped,
-        move.engine, tuple(said),
+        there, samples.times, q, rates, error, samples.torque, move.switch, here, spec.E is not None, pole, move.engine,
+        stopped=stopped, cautions=tuple(said),
     )  # fmt: skip
 
 

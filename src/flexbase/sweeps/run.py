@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from flexbase.cautions import collected
 from flexbase.checks import choose
+from flexbase.errors import InputError
 from flexbase.measures import MEASURES, Measure
 from flexbase.model.loop import Asked, loop_on
 from flexbase.plant import Plant, check_plant
@@ -49,6 +50,10 @@ def sweep(
     """
     check_plant(plant)
     cells, execution = Cells.checked(cells), Execution.checked(execution)
+    if not isinstance(measures, Iterable):
+        raise InputError(
+            f"measures: {type(measures).__name__} given. Give names of measures; cells by name, such as cells=Cells()."
+        )
     names = [measures] if isinstance(measures, str) else list(measures)
     chosen = tuple(choose("measure", name, MEASURES) for name in dict.fromkeys(names))
     with collected() as said:

@@ -7,47 +7,35 @@ from typing import ClassVar
 
 import numpy as np
 
-from flexbase.checks import Array
-from flexbase.plant import Pose
 from flexbase.sampled.controller import SampledController
+from flexbase.sampled.judged import dies_out
 from flexbase.sheets.numbers import number
 from flexbase.sheets.sheet import Sheet, answer, facts, make_sheet
-from flexbase.sheets.told import Told
 from flexbase.simulation.hardware.push import Push
-from flexbase.simulation.settling import SETTLED, error_sizes
+from flexbase.simulation.record import Record
+from flexbase.simulation.settling import SETTLED
 
 GROWS = 1.5  # of the error between two quarters of the time judged: more than noise and counts make of one another
 
 
 @dataclass(frozen=True, eq=False)
-class SampledRun(Told):
+class SampledRun(Record):
     """A run of a sampled controller on a nonlinear plant, one entry a sample of the controller.
 
-    t : shape (T,) [s]; q, rates : shape (T, N); tip_error : true, not as measured, against the goal, shape (T, k)
     torque : as the drives gave it until the next sample, shape (T, n)
     switch : when the sampled controller takes over from joint tracking [s]; 0: at once
     spectral_radius : of the linear loop at the goal, a sample; below 1 the verdict is that it settles
     saturated_samples : in which a drive could not give the torque that it was asked for
     tolerance : tip error below which it counts as settled [m, and rad for rotation rows]
-    stopped : why the run ended early, or None; cautions : what should be known of the loop
     """
 
     controller: SampledController
-    goal: Pose
-    t: Array
-    q: Array
-    rates: Array
-    tip_error: Array
-    torque: Array
-    switch: float
     push: Push | None
     spectral_radius: float
     saturated_samples: int
     engine: str
     seed: int
     tolerance: float = SETTLED
-    stopped: str | None = None
-    cautions: tuple[str, ...] = ()
 
     document: ClassVar = (
         "method=controller.name",
@@ -82,17 +70,12 @@ class SampledRun(Told):
     @property
     def predicted(self) -> bool:
         """The linear verdict at the goal: stable."""
-        return self.spectral_radius < 1.0
+        return dies_out(self.spectral_radius)
 
     @property
     def judged_from(self) -> float:
         """From when on the loop is left alone [s]: after the switch, and after the push."""
         return max(self.switch, 0.0 if self.push is None else round(self.push.start + self.push.duration, 9))
-
-    @property
-    def error_size(self) -> Array:
-        """Length of the tip error: positions in m, or rotations in rad where larger, shape (T,)."""
-        return error_sizes(self.tip_error, self.goal.arm.task)
 
     @property
     def growth(self) -> float | None:
@@ -133,11 +116,6 @@ class SampledRun(Told):
         """Largest tip error after the switch, push included."""
         late = self.error_size[self.t >= self.switch]
         return float(late.max(initial=0.0))
-
-    @property
-    def peak_torque(self) -> Array:
-        """Largest torque of each arm joint [N m or N], shape (n,)."""
-        return np.asarray(np.abs(self.torque).max(axis=0))
 
     def sheet(self) -> Sheet:
         """What was run, the linear verdict, and whether the tip settles."""

@@ -14,7 +14,7 @@ from flexbase.model.sensing import Sensing
 from flexbase.plant import Pose
 from flexbase.sampled.changes import Changed, changed_pose, eight_changes
 from flexbase.sampled.controller import SampledController
-from flexbase.sampled.judged import judged
+from flexbase.sampled.judged import dies_out, judged
 from flexbase.sheets.plain import Plain
 from flexbase.synthesis import HARDWARE_METHODS
 
@@ -57,7 +57,7 @@ class Case(Plain):
     @property
     def stable(self) -> bool:
         """The linear verdict."""
-        return self.radius < 1.0
+        return dies_out(self.radius)
 
     @property
     def rate(self) -> float:
