@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import flexbase as fb
 from flexbase.measures import MEASURES
+from flexbase.measures.registry import Configuration, Measure
 from flexbase.study.postures.objective import Objective
 from flexbase.sweeps import difference
 
@@ -119,3 +122,21 @@ def test_a_new_measure_needs_one_line(paper: fb.Plant, monkeypatch: pytest.Monke
     moved = chart.copy(deep=True)
     moved["new"] = moved["new"] + 3.9
     assert np.nanmax(np.abs(difference(chart, moved)["new"].values + 0.1)) <= 1e-12
+
+
+def test_a_configuration_without_a_compensator_is_its_own_original(paper_pose: fb.Pose) -> None:
+    """With E, `original` is what it was without; both read the same M."""
+    arm, base = paper_pose.arm, paper_pose.arm.base
+    bare = Configuration(paper_pose.M, paper_pose.J, arm.parts, base.stiffness, base.damping)
+    assert bare.original is bare.reduced
+    shaped = replace(bare, E=0.01 * np.eye(2))
+    assert np.array_equal(shaped.original.R0, bare.reduced.R0)
+    assert not np.array_equal(shaped.reduced.R0, bare.reduced.R0)
+
+
+def test_a_measure_is_of_the_whole_and_good_when_large_unless_said() -> None:
+    """Modes are read by those of one mode and by those of all."""
+    plain = Measure("name", "1", "purpose", lambda one: 0.0)
+    assert not any((plain.per_mode, plain.all_modes, plain.slow, plain.small_is_good, plain.reads_modes))
+    assert plain._replace(per_mode=True).reads_modes
+    assert plain._replace(all_modes=True).reads_modes

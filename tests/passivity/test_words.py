@@ -82,3 +82,8 @@ def test_a_system_without_a_pose_is_a_system(verdict):
     assert (verdict.name, verdict.compensated) == ("ueda2003", False)
     assert "q" not in told.to_dict()
     assert {"q", "tip"} <= set(verdict.to_dict())
+
+
+def test_a_system_has_no_compensator(paper_pose):
+    found = fb.verdict(fb.linearise(paper_pose))
+    assert (found.name, found.compensated, found.positive_real) == ("system", False, False)
