@@ -8,12 +8,11 @@ import numpy as np
 
 from flexbase.checks import Array
 from flexbase.plant import Pose
-from flexbase.sheets.told import Told
 from flexbase.simulation.settling import error_sizes
 
 
 @dataclass(frozen=True, eq=False)
-class Record(Told):
+class Record:
     """A motion to a goal, sampled at equal intervals.
 
     t : shape (T,) [s]; q, rates : shape (T, N); tip_error : true, not as measured, against the goal, shape (T, k)

@@ -13,12 +13,13 @@ from flexbase.plant import Pose
 from flexbase.sheets import units
 from flexbase.sheets.numbers import number
 from flexbase.sheets.sheet import Column, Sheet, answer, facts, make_sheet, table, words
+from flexbase.sheets.told import Told
 from flexbase.simulation.record import Record
 from flexbase.simulation.settling import SETTLED
 
 
 @dataclass(frozen=True, eq=False)
-class Run(Record):
+class Run(Record, Told):
     """A move and a settling phase.
 
     switch : when the task-space loop takes over [s]

@@ -11,6 +11,7 @@ from flexbase.sampled.controller import SampledController
 from flexbase.sampled.judged import dies_out
 from flexbase.sheets.numbers import number
 from flexbase.sheets.sheet import Sheet, answer, facts, make_sheet
+from flexbase.sheets.told import Told
 from flexbase.simulation.hardware.push import Push
 from flexbase.simulation.record import Record
 from flexbase.simulation.settling import SETTLED
@@ -19,7 +20,7 @@ GROWS = 1.5  # of the error between two quarters of the time judged: more than n
 
 
 @dataclass(frozen=True, eq=False)
-class SampledRun(Record):
+class SampledRun(Record, Told):
     """A run of a sampled controller on a nonlinear plant, one entry a sample of the controller.
 
     torque : as the drives gave it until the next sample, shape (T, n)
