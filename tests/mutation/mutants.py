@@ -79,6 +79,8 @@ def _below(node: ast.AST, where: str) -> Iterator[Place]:
         where = f"{where}.{node.name}".lstrip(".")
     if where.rpartition(".")[2].startswith("sheet"):  # what sheets say is no decision: tests/contract/test_results.py
         return
+    if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+        return
     if isinstance(node, ast.Raise) or (isinstance(node, ast.keyword) and node.arg in SILENT):
         return
     for field, value in ast.iter_fields(node):
