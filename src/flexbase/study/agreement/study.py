@@ -74,18 +74,23 @@ class Agreement(Told):
         *("method_predictor", "borderline", "growth_error", "mix", "seen_by", "redrawn", "undesigned", "cases=told"),
     )
 
+    @property
+    def pairs(self) -> list[tuple[Case, Outcome]]:
+        """Each case with its outcome."""
+        return list(zip(self.cases, self.outcomes, strict=True))
+
     def confusion(self) -> dict[str, int]:
         """Counts of the four combinations."""
         words = Counter(
             f"predicted_{'stable' if case.stable else 'unstable'}_{'settled' if found.settled else 'not_settled'}"
-            for case, found in zip(self.cases, self.outcomes, strict=True)
+            for case, found in self.pairs
         )
         return {f"predicted_{a}_{b}": words[f"predicted_{a}_{b}"] for a in CLASSES for b in ("settled", "not_settled")}
 
     @property
     def agreement(self) -> float:
         """Share of verdicts that come true."""
-        return float(np.mean([a.stable == b.settled for a, b in zip(self.cases, self.outcomes, strict=True)]))
+        return float(np.mean([a.stable == b.settled for a, b in self.pairs]))
 
     @property
     def false_stable_rate(self) -> float:
@@ -107,19 +112,17 @@ class Agreement(Told):
     @property
     def growth_error(self) -> float:
         """Median difference of measured and promised growth, over the promised one; NaN of moves."""
-        pairs = [(a.rate, b.growth) for a, b in zip(self.cases, self.outcomes, strict=True) if np.isfinite(b.growth)]
+        pairs = [(a.rate, b.growth) for a, b in self.pairs if np.isfinite(b.growth)]
         return float(np.median([abs(b - a) / abs(a) for a, b in pairs])) if pairs else float("nan")
 
     def borderline(self) -> dict[str, Any]:
         """Cases with a spectral radius within 1e-3 of 1, in the count like all others."""
-        near = [
-            (a.stable, b.settled) for a, b in zip(self.cases, self.outcomes, strict=True) if abs(a.radius - 1.0) < NEAR
-        ]
+        near = [(a.stable, b.settled) for a, b in self.pairs if abs(a.radius - 1.0) < NEAR]
         return {"within": NEAR, "cases": len(near), "agreeing": sum(a == b for a, b in near)}
 
     def complete(self) -> dict[str, int]:
         """Cases that are stable with good disk margins on all changed robots too, and how many of them settle."""
-        outcomes = [found.settled for case, found in zip(self.cases, self.outcomes, strict=True) if case.complete]
+        outcomes = [found.settled for case, found in self.pairs if case.complete]
         return {"cases": len(outcomes), "settled": sum(outcomes)}
 
     def constant_predictor(self) -> dict[str, Any]:
@@ -136,13 +139,13 @@ class Agreement(Told):
     def method_predictor(self) -> dict[str, float]:
         """What always giving a method's commoner answer would score: how much of the mix its name gives away."""
         told: dict[str, list[bool]] = {}
-        for case, found in zip(self.cases, self.outcomes, strict=True):
+        for case, found in self.pairs:
             told.setdefault(case.method, []).append(found.settled)
         return {"agreement": sum(max(sum(one), len(one) - sum(one)) for one in told.values()) / len(self.cases)}
 
     def told(self) -> list[dict[str, Any]]:
         """What was drawn, the verdict and the outcome of each case."""
-        return [{**case.to_dict(), **found.to_dict()} for case, found in zip(self.cases, self.outcomes, strict=True)]
+        return [{**case.to_dict(), **found.to_dict()} for case, found in self.pairs]
 
     def disagreements(self) -> list[dict[str, Any]]:
         """The cases that disagree, with what explains them."""
@@ -155,11 +158,9 @@ class Agreement(Told):
 
     def mix(self) -> dict[str, dict[str, int]]:
         """How many cases of each method were called stable and unstable."""
-        table: dict[str, dict[str, int]] = {}
-        for case in self.cases:
-            row = table.setdefault(case.method, {"stable": 0, "unstable": 0})
-            row["stable" if case.stable else "unstable"] += 1
-        return dict(sorted(table.items()))
+        counts = Counter((case.method, case.stable) for case in self.cases)
+        methods = sorted({case.method for case in self.cases})
+        return {name: {"stable": counts[name, True], "unstable": counts[name, False]} for name in methods}
 
     @property
     def good(self) -> bool:

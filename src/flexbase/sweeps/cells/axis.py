@@ -40,3 +40,8 @@ def boxes(shape: tuple[int, ...], block: tuple[int, ...]) -> Iterator[tuple[tupl
 def extent(box: Box) -> tuple[int, ...]:
     """Cells along each dimension."""
     return tuple(end - begin for begin, end in box)
+
+
+def region(box: Box) -> tuple[slice, ...]:
+    """Where a box stands in an array of all cells."""
+    return tuple(slice(begin, end) for begin, end in box)

@@ -58,13 +58,9 @@ def _by_dask(job: Job, blocks: Sequence[Work], scheduler: str) -> Iterator[Resul
     with _client(scheduler) as client:
         distributed = import_extra("distributed", "maps")
         carried = client.scatter(job, broadcast=True)
-        futures = {client.submit(_run, carried, work, pure=False, retries=2): work for work in blocks}
+        futures = {client.submit(Job.run, carried, work, pure=False, retries=2): work for work in blocks}
         for done, result in distributed.as_completed(futures, with_results=True):
             yield futures.pop(done), result
-
-
-def _run(job: Job, work: Work) -> Arrays:
-    return job.run(work)
 
 
 @contextmanager

@@ -10,7 +10,7 @@ import numpy as np
 
 from flexbase.errors import InputError
 from flexbase.requests import Progress
-from flexbase.sweeps.cells.axis import Box, boxes, extent
+from flexbase.sweeps.cells.axis import boxes, extent, region
 from flexbase.sweeps.cells.domain import Domain
 from flexbase.sweeps.engine.executors import run_blocks
 from flexbase.sweeps.engine.job import Job
@@ -60,14 +60,10 @@ def run(
     whole = {one.name for one in question.columns if one.of_block}
     for (place, box), values in run_blocks(job, rest, execution):
         for name, part in values.items():
-            arrays[name][place if name in whole else _region(box)] = part
+            arrays[name][place if name in whole else region(box)] = part
         done += _size(extent(box))
         progress("cells", done, total)
     return to_dataset(fields, arrays, said) if job.store is None else open_dataset(job.store)
-
-
-def _region(box: Box) -> tuple[slice, ...]:
-    return tuple(slice(begin, end) for begin, end in box)
 
 
 def _size(shape: tuple[int, ...]) -> int:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from flexbase.checks import Array
 from flexbase.errors import InputError, import_extra
-from flexbase.sweeps.cells.axis import Box
+from flexbase.sweeps.cells.axis import Box, region
 from flexbase.sweeps.kept.recipe import differences, digest
 
 RECIPE = "flexbase_recipe"
@@ -50,10 +50,9 @@ class Store:
 
     def write(self, place: tuple[int, ...], box: Box, values: Mapping[str, Array]) -> None:
         """Write a block's arrays, then mark it. Raises InputError where the disk is full or gone."""
-        region = tuple(slice(begin, end) for begin, end in box)
         with _disk(self.path, "finished blocks are kept; make room and go on with --resume"):
             for name, part in values.items():
-                self._group[name][region] = part
+                self._group[name][region(box)] = part
             self._group[FINISHED][place] = 1
 
 
