@@ -63,7 +63,7 @@ def test_an_undamped_one_is_judged_by_its_residue(c, positive):
 
 def test_a_mass_pushed_one_way_and_seen_the_other_fails_at_rest():
     found = fb.verdict(small(c=-1.0))
-    assert (found.positive_real, found.shortage) == (False, -np.inf)
+    assert (found.positive_real, found.shortage, found.worst_at) == (False, -np.inf, 0.0)
     assert "The rigid motion R0 is not symmetric" in found.caveats[0]
 
 
@@ -73,19 +73,19 @@ def test_a_compensator_is_told(paper_pose):
 
 
 class Port:
-    """Responses at two resonances, the second with a part of it missing."""
+    """Responses at three resonances, the second with a part of it missing, the third not seen at all."""
 
     def __init__(self, missing):
         self.missing = missing
 
     def seeds(self):
-        return np.array([3.0, 50.0])
+        return np.array([3.0, 50.0, 60.0])
 
     def largest_singular_value(self, omega):
-        return np.array([1.0, 2.0])[: len(omega)]
+        return np.array([1.0, 0.5, 0.0])[: len(omega)]
 
     def least_eigenvalue(self, omega):
-        return np.array([0.0, -2.0 * self.missing])[: len(omega)]
+        return np.array([0.0, -0.5 * self.missing, 0.0])[: len(omega)]
 
 
 @pytest.mark.parametrize(("missing", "said"), [(0.9e-6, False), (1.1e-6, True), (0.01, True)])
@@ -98,3 +98,57 @@ def test_a_millionth_of_a_resonance_deserves_a_word(missing, said):
         )
     assert judge._hidden(Port(missing), 3.0, (0.0, 49.0)) == ()
     assert judge._hidden(Port(missing), 3.0, (0.0, 1.0)) == ()
+
+
+def test_a_shortage_beside_a_high_resonance_is_told():
+    """s/(s^2 + 1e-3 s + 1) - 1e-6 s/(s^2 + s + 2500): 6e-7 short at 50 rad/s, against a thousand at 1 rad/s."""
+    one, pair = np.eye(2), ("q", "r")
+    parts = (one, np.diag([1e-3, 1.0]), np.diag([1.0, 2500.0]), np.array([[1.0], [1e-3]]), np.array([[1.0, -1e-3]]))
+    found = fb.verdict(fb.SecondOrder(*parts, pair, ("f",), ("y",)))
+    assert found.positive_real
+    assert 1e-10 < -found.relative_shortage < 1e-8
+    assert "Within the tolerance only beside the resonance at 1 rad/s: near 50" in found.caveats[0]
+
+
+def test_what_is_not_positive_real_needs_no_such_word():
+    assert fb.verdict(small(D=1.0, K=1.0, c=-1.0)).caveats == ()
+
+
+def test_a_search_that_did_not_settle_is_told(monkeypatch):
+    search = judge.input_index
+    assert fb.verdict(small(D=1.0, K=1.0)).caveats == ()
+    monkeypatch.setattr(judge, "input_index", lambda *asked: search(*asked)._replace(settled=False))
+    assert "did not settle" in fb.verdict(small(D=1.0, K=1.0)).caveats[0]
+
+
+@pytest.mark.parametrize("damping", [0.25, 4.0])
+def test_the_output_index_is_the_damping(damping):
+    """Re 1/G = Re (s + d + 1/s) = d at every frequency."""
+    assert fb.verdict(small(D=damping, K=1.0)).output_index == pytest.approx(damping, rel=1e-6)
+
+
+def test_a_residue_misses_by_more_than_rounding():
+    """diag(1, -x) misses x of its size, and 1e-8 counts as rounding [theory §5]."""
+    for missing, fails in ((0.9e-8, False), (1.1e-8, True)):
+        assert judge._misses(np.diag([1.0, -missing])) == fails
+    assert not judge._misses(np.zeros((2, 2)))
+
+
+def test_at_rest_there_is_no_skew_part_without_springs():
+    assert fb.verdict(small(D=1.0, K=0.25)).skew_low == 0.0
+    assert fb.verdict(small(D=1.0)).skew_low is None
+
+
+def test_what_else_is_counted_or_left_out(paper_pose):
+    good = fb.verdict(small(D=1.0, K=1.0))
+    bad = fb.verdict(small(D=1.0, K=1.0, c=-1.0))
+    assert judge._cautions(None, None) == judge._cautions(paper_pose, None) == ()
+    assert judge._cautions(None, good)[0].endswith("of the base alone: positive real.")
+    assert "of the base alone: not positive real, shortage -1 m/(N s)" in judge._cautions(None, bad)[0]
+    redundant = fb.load("iiwa-platform").at(np.full(7, 0.4))
+    assert [text.partition(":")[0] for text in judge._cautions(redundant, None)] == ["Redundant arm"]
+
+
+def test_no_inertia_is_refused():
+    with pytest.raises(fb.InputError, match="is no inertia"):
+        fb.verdict(small(M=0.0, D=1.0))
