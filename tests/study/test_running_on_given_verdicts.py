@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import flexbase as fb
+from flexbase.cautions import caution
 from flexbase.errors import Infeasible
 from flexbase.model.loop import loop_on
 from flexbase.study.running import comparison, hardware_map, hardware_study
@@ -48,8 +49,17 @@ def test_a_method_without_a_design_is_nothing(paper_pose: fb.Pose, monkeypatch: 
 
 
 @pytest.mark.parametrize(("rate", "stable"), [(1000.0, False), (4000.0, True)])
-def test_a_design_is_judged_without_its_cautions(paper_pose: fb.Pose, rate: float, stable: bool) -> None:
-    """The ideal gain's algebraic loop deserves a caution, which is an error here; its verdict says it better."""
+def test_a_design_is_judged_without_its_cautions(
+    paper_pose: fb.Pose, monkeypatch: pytest.MonkeyPatch, rate: float, stable: bool
+) -> None:
+    """A caution of the ideal design would be an error here; its verdict says it better."""
+    real = HARDWARE_METHODS["exact"]
+
+    def cautious(*asked: object, **options: object) -> object:
+        caution("said of the ideal design")
+        return real.make(*asked, **options)
+
+    monkeypatch.setitem(HARDWARE_METHODS, "exact", real._replace(make=cautious))
     sensing = fb.Sensing(rate=rate)
     found = hardware_study._outcome(paper_pose, "exact", Setting(rate, 1.0), loop_on(paper_pose.arm))
     assert (found.designed, found.stable, found.margin) == (True, stable, False)
