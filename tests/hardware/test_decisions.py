@@ -13,6 +13,7 @@ import flexbase as fb
 from flexbase.linear.discrete.disk_margin import grid_of
 from flexbase.linear.discrete.system import Discrete, feedback
 from flexbase.sampled import figures
+from flexbase.sampled import judged as judging
 from flexbase.sampled.judged import ALMOST, GOOD_MARGIN, SAFE, STABLE, UNSTABLE, Judged, robots_at
 from flexbase.sampled.verdict import HardwareVerdict, verdict_of
 from flexbase.study.running import recommend as choice
@@ -180,6 +181,24 @@ def test_both_margins_decide(paper_pose: fb.Pose, margins: tuple[float, float]) 
     found = found_with(paper_pose, 0.9, [0.9], margins)
     assert (found.has_margin(), found.has_margin(0.29), found.accepted(), found.grade) == (False, True, False, ALMOST)
     assert found_with(paper_pose, 0.9, [1.1], margins).grade == STABLE
+
+
+@pytest.mark.parametrize("clears", [(True, True), (True, False), (False, True)])
+def test_a_quick_look_asks_for_both_margins(
+    paper_pose: fb.Pose, monkeypatch: pytest.MonkeyPatch, clears: tuple[bool, bool]
+) -> None:
+    """At torques and at sensors, against two hundredths more than the margin that is asked."""
+    told: list[float] = []
+
+    def clear(_: np.ndarray, margin: float) -> bool:
+        told.append(margin)
+        return clears[len(told) - 1]
+
+    monkeypatch.setattr(judging, "_clears", clear)
+    found = found_with(paper_pose, 0.9, [0.9])
+    assert found.seems_accepted(0.5) == all(clears)
+    assert told[0] == pytest.approx(0.51)
+    assert not found_with(paper_pose, 0.9, [1.1]).seems_accepted()
 
 
 def test_quick_margins_look_at_every_sensor_that_is_heard(paper_pose: fb.Pose) -> None:
